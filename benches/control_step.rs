@@ -1,0 +1,74 @@
+//! One learned control step: sense, choose through the whole hierarchy, move, learn.
+//!
+//! The hierarchy is the complete one of Thesis Figure 4.2; one element is one step.
+
+use std::hint::black_box;
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use maxq_lab::hierarchy::parse;
+use maxq_lab::learning::{Agent, Encoder, Gate, Hierarchy, Skills, train};
+use maxq_lab::random::{Purpose, stream};
+use maxq_lab::scenario::{Scenario, WorldModel};
+use maxq_lab::worlds::World;
+use maxq_lab::worlds::foraging::ForagingWorld;
+
+const COMPLETE: &str = "(Root (Capture (FindBattery Avoid Wander) \
+    (VisibleBattery Avoid Wander ApproachBattery Turn)) (Deliver (FindNest Avoid Wander) \
+    (VisibleNest Avoid Wander ApproachNest Turn)))";
+const STEPS: u32 = 20_000;
+
+fn control_step(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("learned control steps, complete hierarchy");
+    group.throughput(Throughput::Elements(u64::from(STEPS)));
+    for name in ["environment-1", "environment-2", "environment-3"] {
+        let scenario = Scenario::load(name).expect("shipped");
+        let WorldModel::Foraging(model) = &scenario.world;
+        let world = ForagingWorld::new(model).expect("shipped");
+        let encoder = Encoder::new(world.catalogue());
+        let gate = Gate::default();
+        let trained = world.catalogue().primitives().map(|primitive| {
+            let mut rng = stream(1, 0, primitive.index() as u64, Purpose::PrimitiveTraining);
+            train(
+                &world,
+                &encoder,
+                &scenario.learning,
+                primitive,
+                &mut rng,
+                &gate,
+            )
+            .expect("open")
+        });
+        let skills = Skills::new(trained.collect(), world.catalogue()).expect("complete");
+        let tree = parse(COMPLETE, world.catalogue()).expect("valid");
+        let fresh = || {
+            let hierarchy = Hierarchy::new(tree.clone(), world.catalogue(), 2.0, 0.123);
+            Agent::new(
+                &world,
+                &encoder,
+                &scenario.learning,
+                hierarchy,
+                skills.clone(),
+                2000,
+            )
+        };
+        group.bench_function(name, |bencher| {
+            bencher.iter_batched_ref(
+                || (fresh(), stream(1, 0, 0, Purpose::Life)),
+                |(agent, rng)| {
+                    let mut left = STEPS;
+                    while left > 0 {
+                        let start = world.draw_start(rng);
+                        let trial = agent.run_trial(&start, left.min(2000), rng, &gate);
+                        left -= trial.expect("open").steps;
+                    }
+                    black_box(agent);
+                },
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, control_step);
+criterion_main!(benches);

@@ -1,0 +1,118 @@
+//! A scenario ready to be carried out.
+
+use thiserror::Error;
+
+use super::parallel::Workers;
+use crate::hierarchy::{self, TextError, Tree, TypingError};
+use crate::learning::{Encoder, Gate, Hierarchy, Skills, Stopped, train};
+use crate::random::{Purpose, stream};
+use crate::scenario::Scenario;
+use crate::worlds::{Catalogue, World};
+
+/// A scenario with its world, its feature maps and its first hierarchies.
+#[derive(Clone, Debug)]
+pub struct Experiment<W> {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// Its world.
+    pub world: W,
+    /// The feature maps of the world's subtasks.
+    pub encoder: Encoder,
+    /// The hand-coded initial population.
+    pub initial_population: Vec<Tree>,
+}
+
+/// Why a hierarchy cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum TreeError {
+    /// It is not the text of a hierarchy.
+    #[error(transparent)]
+    Text(#[from] TextError),
+    /// It breaks a typing rule.
+    #[error(transparent)]
+    Typing(#[from] TypingError),
+}
+
+/// Why a scenario cannot be carried out although its numbers are allowed.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("evolution.initial_population[{index}]: {source}")]
+pub struct ExperimentError {
+    /// Index of the hierarchy in the initial population.
+    pub index: usize,
+    /// What is wrong with it.
+    pub source: TreeError,
+}
+
+impl<W: World> Experiment<W> {
+    /// Makes a scenario and its world ready.
+    ///
+    /// # Errors
+    /// When a hierarchy of the initial population is malformed or breaks a rule.
+    pub fn new(scenario: Scenario, world: W) -> Result<Self, ExperimentError> {
+        let catalogue = world.catalogue();
+        let depth = scenario.evolution.maximum_depth;
+        let texts = scenario.evolution.initial_population.iter().enumerate();
+        let trees = texts.map(|(index, text)| {
+            read_tree(text, catalogue, depth).map_err(|source| ExperimentError { index, source })
+        });
+        Ok(Self {
+            initial_population: trees.collect::<Result<_, _>>()?,
+            encoder: Encoder::new(catalogue),
+            scenario,
+            world,
+        })
+    }
+
+    /// The world's subtasks.
+    #[must_use]
+    pub fn catalogue(&self) -> &Catalogue {
+        self.world.catalogue()
+    }
+
+    /// A hierarchy of this shape that has learned nothing.
+    #[must_use]
+    pub fn newborn(&self, tree: Tree) -> Hierarchy {
+        let learning = &self.scenario.learning;
+        let temperature = learning.initial_temperature as f32;
+        let initial = learning.initial_parameter as f32;
+        Hierarchy::new(tree, self.catalogue(), temperature, initial)
+    }
+
+    /// Trains the primitive subtasks; `bank` numbers independent trainings.
+    ///
+    /// # Errors
+    /// When the gate is stopped.
+    pub fn train(
+        &self,
+        seed: u64,
+        bank: u64,
+        workers: &Workers,
+        gate: &Gate,
+    ) -> Result<Skills, Stopped> {
+        let primitives: Vec<_> = self.catalogue().primitives().collect();
+        let skills = workers.map((0..primitives.len()).collect(), |index| {
+            let mut rng = stream(seed, bank, index as u64, Purpose::PrimitiveTraining);
+            let learning = &self.scenario.learning;
+            train(
+                &self.world,
+                &self.encoder,
+                learning,
+                primitives[index],
+                &mut rng,
+                gate,
+            )
+        })?;
+        let skills = Skills::new(skills, self.catalogue());
+        Ok(skills.unwrap_or_else(|| unreachable!("one skill was trained for each primitive")))
+    }
+}
+
+/// Reads a hierarchy and checks the typing rules.
+///
+/// # Errors
+/// When the text is malformed or breaks a rule.
+pub fn read_tree(text: &str, catalogue: &Catalogue, depth: usize) -> Result<Tree, TreeError> {
+    let tree = hierarchy::parse(text, catalogue)?;
+    hierarchy::check(&tree, catalogue, depth)?;
+    Ok(tree)
+}

@@ -1,0 +1,158 @@
+//! The text form of hierarchies: `(Root (Capture Wander ApproachBattery) ...)`.
+
+use thiserror::Error;
+
+use super::tree::Tree;
+use crate::worlds::{Catalogue, SubtaskId};
+
+/// Longest text that is read, in bytes.
+pub const MAX_TEXT_BYTES: usize = 4096;
+
+/// Why a text is not a hierarchy.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum TextError {
+    /// The text is too long.
+    #[error("the hierarchy has {found} bytes; allowed: at most {MAX_TEXT_BYTES}")]
+    TooLong {
+        /// Length in bytes.
+        found: usize,
+    },
+    /// Something else was expected at a place in the text.
+    #[error("at byte {at}: found {found}; allowed: {expected}")]
+    Unexpected {
+        /// Offset in bytes, from 0.
+        at: usize,
+        /// What stands there.
+        found: String,
+        /// What may stand there.
+        expected: String,
+    },
+}
+
+/// Reads the text form. Typing rules are not checked ([`super::check`]).
+///
+/// # Errors
+/// When the text is too long, is not one tree in parentheses, or names a subtask
+/// that the catalogue does not have.
+pub fn parse(text: &str, catalogue: &Catalogue) -> Result<Tree, TextError> {
+    if text.len() > MAX_TEXT_BYTES {
+        return Err(TextError::TooLong { found: text.len() });
+    }
+    let mut preorder = Vec::new();
+    let mut depth = 0;
+    let mut opened = false;
+    for (at, token) in tokens(text) {
+        let unexpected = |expected: String| TextError::Unexpected {
+            at,
+            found: format!("{token:?}"),
+            expected,
+        };
+        let complete = depth == 0 && !preorder.is_empty();
+        match token {
+            _ if complete => return Err(unexpected(String::from("the end of the text"))),
+            "(" if opened => return Err(unexpected(names(catalogue))),
+            "(" => opened = true,
+            ")" if opened || depth == 0 => return Err(unexpected(expected_at(depth, catalogue))),
+            ")" => depth -= 1,
+            _ if !opened && depth == 0 => return Err(unexpected(String::from("'('"))),
+            name => {
+                let subtask = catalogue
+                    .find(name)
+                    .ok_or_else(|| unexpected(names(catalogue)))?;
+                preorder.push((subtask, depth + 1));
+                depth += usize::from(std::mem::take(&mut opened));
+            }
+        }
+    }
+    let whole = Tree::from_preorder(&preorder).filter(|_| depth == 0 && !opened);
+    whole.ok_or_else(|| TextError::Unexpected {
+        at: text.len(),
+        found: String::from("the end of the text"),
+        expected: expected_at(depth, catalogue),
+    })
+}
+
+fn expected_at(depth: usize, catalogue: &Catalogue) -> String {
+    match depth {
+        0 => format!("'(' and {}", names(catalogue)),
+        _ => format!("')', '(', or {}", names(catalogue)),
+    }
+}
+
+fn names(catalogue: &Catalogue) -> String {
+    let names: Vec<_> = catalogue
+        .subtasks
+        .iter()
+        .map(|subtask| subtask.name)
+        .collect();
+    format!("a subtask ({})", names.join(", "))
+}
+
+/// Parentheses and the words between them, with their offsets.
+fn tokens(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut rest = 0;
+    std::iter::from_fn(move || {
+        let start = rest + text[rest..].find(|c: char| !c.is_ascii_whitespace())?;
+        let token = &text[start..];
+        let end = match token.strip_prefix(['(', ')']) {
+            Some(_) => 1,
+            None => token
+                .find(|c: char| c.is_ascii_whitespace() || c == '(' || c == ')')
+                .unwrap_or(token.len()),
+        };
+        rest = start + end;
+        Some((start, &text[start..rest]))
+    })
+}
+
+/// Writes the text form, children in their order.
+#[must_use]
+pub fn to_text(tree: &Tree, catalogue: &Catalogue) -> String {
+    write(
+        tree,
+        0,
+        &|node| catalogue.subtask(tree.subtask(node)).name,
+        &|children| children,
+    )
+}
+
+/// Writes the canonical structure: the text form with children sorted, equal for
+/// two trees exactly if they are the same when the order of children is ignored.
+#[must_use]
+pub fn canonical(tree: &Tree, catalogue: &Catalogue) -> String {
+    let sorted = |mut children: Vec<String>| {
+        children.sort_unstable();
+        children
+    };
+    write(
+        tree,
+        0,
+        &|node| catalogue.subtask(tree.subtask(node)).name,
+        &sorted,
+    )
+}
+
+fn write<'c>(
+    tree: &Tree,
+    node: usize,
+    name: &impl Fn(usize) -> &'c str,
+    order: &impl Fn(Vec<String>) -> Vec<String>,
+) -> String {
+    let children = tree
+        .children(node)
+        .map(|child| write(tree, child, name, order));
+    let children = order(children.collect());
+    if children.is_empty() {
+        name(node).to_owned()
+    } else {
+        format!("({} {})", name(node), children.join(" "))
+    }
+}
+
+impl SubtaskId {
+    /// The subtask's name in the given catalogue.
+    #[must_use]
+    pub fn name(self, catalogue: &Catalogue) -> &'static str {
+        catalogue.subtask(self).name
+    }
+}

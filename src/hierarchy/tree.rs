@@ -1,0 +1,108 @@
+//! An ordered tree of subtasks.
+
+use std::ops::Range;
+
+use crate::worlds::SubtaskId;
+
+/// A node of a tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Node {
+    /// The subtask it stands for.
+    pub subtask: SubtaskId,
+    /// Index of its parent; `None` for the root.
+    pub parent: Option<usize>,
+    /// Levels from the root, which is at 1.
+    pub depth: usize,
+    /// Index after its last descendant: its subtree is `index..end`.
+    end: usize,
+}
+
+/// An ordered tree of subtasks, its nodes in preorder: the root is node 0 and a
+/// subtree is a range of nodes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tree {
+    nodes: Vec<Node>,
+}
+
+impl Tree {
+    /// The tree of the given subtasks and depths in preorder, the root first at
+    /// depth 1; `None` if these are not the depths of a tree.
+    #[must_use]
+    pub fn from_preorder(preorder: &[(SubtaskId, usize)]) -> Option<Self> {
+        let mut nodes: Vec<Node> = Vec::with_capacity(preorder.len());
+        let mut path: Vec<usize> = Vec::new();
+        for (index, &(subtask, depth)) in preorder.iter().enumerate() {
+            let is_root = index == 0;
+            if depth == 0 || depth > path.len() + 1 || (depth == 1) != is_root {
+                return None;
+            }
+            path.truncate(depth - 1);
+            nodes.push(Node {
+                subtask,
+                parent: path.last().copied(),
+                depth,
+                end: index + 1,
+            });
+            for &ancestor in &path {
+                nodes[ancestor].end = index + 1;
+            }
+            path.push(index);
+        }
+        (!nodes.is_empty()).then_some(Self { nodes })
+    }
+
+    /// All nodes in preorder; never empty.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The subtask of a node.
+    #[must_use]
+    pub fn subtask(&self, node: usize) -> SubtaskId {
+        self.nodes[node].subtask
+    }
+
+    /// The nodes of the subtree at `node`.
+    #[must_use]
+    pub fn subtree(&self, node: usize) -> Range<usize> {
+        node..self.nodes[node].end
+    }
+
+    /// The children of a node, in order.
+    pub fn children(&self, node: usize) -> impl Iterator<Item = usize> + Clone + '_ {
+        let end = self.nodes[node].end;
+        let first = Some(node + 1).filter(|&child| child < end);
+        std::iter::successors(first, move |&child| {
+            Some(self.nodes[child].end).filter(|&next| next < end)
+        })
+    }
+
+    /// The ancestors of a node, its parent first, the root last.
+    pub fn ancestors(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(self.nodes[node].parent, |&parent| self.nodes[parent].parent)
+    }
+
+    /// Number of levels; a root without children has one.
+    #[must_use]
+    pub fn depth(&self) -> usize {
+        self.nodes.iter().map(|node| node.depth).max().unwrap_or(0)
+    }
+
+    /// This tree with the subtree at `site` replaced by the donor's subtree at
+    /// `donor_site`. `site` is not the root.
+    #[must_use]
+    pub fn grafted(&self, site: usize, donor: &Self, donor_site: usize) -> Self {
+        let preorder = |tree: &Self, range: Range<usize>, depth: usize| -> Vec<_> {
+            let base = tree.nodes[range.start].depth;
+            let nodes = tree.nodes[range].iter();
+            nodes
+                .map(|node| (node.subtask, node.depth - base + depth))
+                .collect()
+        };
+        let mut all = preorder(self, 0..self.nodes.len(), 1);
+        let graft = preorder(donor, donor.subtree(donor_site), self.nodes[site].depth);
+        all.splice(self.subtree(site), graft);
+        Self::from_preorder(&all).unwrap_or_else(|| self.clone())
+    }
+}

@@ -1,0 +1,180 @@
+//! The rules that every hierarchy obeys (Thesis 3.2).
+
+use thiserror::Error;
+
+use super::tree::Tree;
+use crate::worlds::{Catalogue, StateTypes, SubtaskId};
+
+/// Which rule a hierarchy breaks.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum TypingError {
+    /// The root is another subtask.
+    #[error("the root is {found}; allowed: {root}")]
+    NotRoot {
+        /// The subtask found.
+        found: &'static str,
+        /// The subtask allowed.
+        root: &'static str,
+    },
+    /// The root occurs further down.
+    #[error("{root} stands below itself; allowed: only at the top")]
+    RootBelow {
+        /// The root subtask.
+        root: &'static str,
+    },
+    /// A composite subtask has no children.
+    #[error("{composite} has no children; allowed: at least one")]
+    Childless {
+        /// The composite subtask.
+        composite: &'static str,
+    },
+    /// A primitive subtask has children.
+    #[error("{primitive} has children; allowed: none, it is a primitive subtask")]
+    PrimitiveParent {
+        /// The primitive subtask.
+        primitive: &'static str,
+    },
+    /// A child's active states do not fit its parent's.
+    #[error(
+        "{child} (active in state types {child_active}) under {parent} (active in \
+         {parent_active}); allowed: {}",
+        if *.composite { "a composite child active only where its parent is" }
+        else { "a child active somewhere where its parent is" }
+    )]
+    NotAllowed {
+        /// The child.
+        child: &'static str,
+        /// Its active state types.
+        child_active: StateTypes,
+        /// Whether the child is composite.
+        composite: bool,
+        /// The parent.
+        parent: &'static str,
+        /// Its active state types.
+        parent_active: StateTypes,
+    },
+    /// A composite subtask occurs twice.
+    #[error("{composite} occurs more than once; allowed: every composite subtask at most once")]
+    Repeated {
+        /// The composite subtask.
+        composite: &'static str,
+    },
+    /// The tree has too many levels.
+    #[error("the depth is {depth}; allowed: 2 to {maximum}, the root counted")]
+    TooDeep {
+        /// Depth found.
+        depth: usize,
+        /// Largest depth allowed.
+        maximum: usize,
+    },
+    /// In some state type no subtask of the tree can act.
+    #[error(
+        "nothing can act in state types {missing}; allowed: a root that can act in all of them"
+    )]
+    CannotAct {
+        /// The state types without any action.
+        missing: StateTypes,
+    },
+}
+
+/// Checks every rule on hierarchies.
+///
+/// # Errors
+/// With the first rule broken, in preorder.
+pub fn check(tree: &Tree, catalogue: &Catalogue, maximum_depth: usize) -> Result<(), TypingError> {
+    let root = catalogue.subtask(SubtaskId::ROOT);
+    let top = catalogue.subtask(tree.subtask(0));
+    if tree.subtask(0) != SubtaskId::ROOT {
+        return Err(TypingError::NotRoot {
+            found: top.name,
+            root: root.name,
+        });
+    }
+    for node in 0..tree.nodes().len() {
+        check_node(tree, catalogue, node)?;
+    }
+    check_repeats(tree, catalogue)?;
+    let depth = tree.depth();
+    if depth > maximum_depth {
+        return Err(TypingError::TooDeep {
+            depth,
+            maximum: maximum_depth,
+        });
+    }
+    let able = able(tree, catalogue)[0];
+    let missing: Vec<_> = catalogue.types().filter(|&t| !able.contains(t)).collect();
+    if !missing.is_empty() {
+        return Err(TypingError::CannotAct {
+            missing: StateTypes::of(&missing),
+        });
+    }
+    Ok(())
+}
+
+fn check_node(tree: &Tree, catalogue: &Catalogue, node: usize) -> Result<(), TypingError> {
+    let subtask = catalogue.subtask(tree.subtask(node));
+    let childless = tree.children(node).next().is_none();
+    if subtask.is_composite() && childless {
+        return Err(TypingError::Childless {
+            composite: subtask.name,
+        });
+    }
+    if !subtask.is_composite() && !childless {
+        return Err(TypingError::PrimitiveParent {
+            primitive: subtask.name,
+        });
+    }
+    let Some(parent) = tree.nodes()[node].parent else {
+        return Ok(());
+    };
+    if tree.subtask(node) == SubtaskId::ROOT {
+        return Err(TypingError::RootBelow { root: subtask.name });
+    }
+    let parent = catalogue.subtask(tree.subtask(parent));
+    let allowed = if subtask.is_composite() {
+        subtask.active.is_subset_of(parent.active)
+    } else {
+        subtask.active.meets(parent.active)
+    };
+    if allowed {
+        return Ok(());
+    }
+    Err(TypingError::NotAllowed {
+        child: subtask.name,
+        child_active: subtask.active,
+        composite: subtask.is_composite(),
+        parent: parent.name,
+        parent_active: parent.active,
+    })
+}
+
+fn check_repeats(tree: &Tree, catalogue: &Catalogue) -> Result<(), TypingError> {
+    let mut seen = vec![false; catalogue.subtasks.len()];
+    for node in tree.nodes() {
+        let subtask = catalogue.subtask(node.subtask);
+        if subtask.is_composite() && std::mem::replace(&mut seen[node.subtask.index()], true) {
+            return Err(TypingError::Repeated {
+                composite: subtask.name,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// For each node the state types in which it can act: a primitive where it is
+/// active, a composite where it is active and at least one child can act.
+#[must_use]
+pub fn able(tree: &Tree, catalogue: &Catalogue) -> Vec<StateTypes> {
+    let mut able = vec![StateTypes::default(); tree.nodes().len()];
+    for node in (0..tree.nodes().len()).rev() {
+        let subtask = catalogue.subtask(tree.subtask(node));
+        able[node] = if subtask.is_composite() {
+            let children = tree.children(node).map(|child| able[child]);
+            let any = children.fold(StateTypes::default(), StateTypes::union);
+            subtask.active.intersection(any)
+        } else {
+            subtask.active
+        };
+    }
+    able
+}

@@ -1,0 +1,193 @@
+//! How good one structure is: fresh hierarchies of it learn and are scored.
+
+use serde::Serialize;
+
+use crate::evolution::{Experiment, Workers};
+use crate::hierarchy::{Tree, to_text};
+use crate::learning::{Agent, Gate, Skills, Stopped};
+use crate::random::{Purpose, stream};
+use crate::worlds::World;
+
+/// How an evaluation is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Protocol {
+    /// Trials of each repeat before scoring starts.
+    pub warmup: usize,
+    /// Scored trials of each repeat; learning goes on.
+    pub trials: usize,
+    /// Fresh hierarchies.
+    pub repeats: usize,
+    /// Separately trained sets of primitive subtasks that the repeats are spread over.
+    pub banks: usize,
+    /// Seed of all random streams.
+    pub seed: u64,
+}
+
+/// One fresh hierarchy's scored trials.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Repeat {
+    /// Time steps of each scored trial.
+    pub steps: Vec<u32>,
+    /// How many of them delivered.
+    pub delivered: usize,
+    /// The set of primitive subtasks used, from 0.
+    pub bank: usize,
+}
+
+/// The result of an evaluation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Evaluation {
+    /// The structure.
+    pub tree: String,
+    /// Every repeat.
+    pub repeats: Vec<Repeat>,
+    /// Mean number of time steps of a scored trial.
+    pub mean: f64,
+    /// Standard error of the mean; `null` for a single repeat. Repeats on the same set
+    /// of primitives are alike, so the variance between sets counts in full.
+    pub standard_error: Option<f64>,
+    /// Share of scored trials that delivered.
+    pub delivered_share: f64,
+    /// Control steps of all trials, warm-up included, training of primitives not.
+    pub control_steps: u64,
+}
+
+/// Evaluates the structure `tree`.
+///
+/// # Errors
+/// When the gate is stopped.
+pub fn evaluate<W: World>(
+    experiment: &Experiment<W>,
+    tree: &Tree,
+    protocol: &Protocol,
+    workers: &Workers,
+    gate: &Gate,
+) -> Result<Evaluation, Stopped> {
+    let banks = (0..protocol.banks)
+        .map(|bank| experiment.train(protocol.seed, bank as u64, workers, gate))
+        .collect::<Result<Vec<_>, _>>()?;
+    let repeats = workers.map((0..protocol.repeats).collect(), |repeat| {
+        let bank = repeat % protocol.banks;
+        one_repeat(experiment, tree, protocol, repeat, &banks[bank], gate)
+    })?;
+    let control_steps = repeats.iter().map(|(_, steps)| steps).sum();
+    let repeats: Vec<_> = repeats.into_iter().map(|(repeat, _)| repeat).collect();
+    let means: Vec<_> = repeats
+        .iter()
+        .map(|repeat| (repeat.bank, repeat.mean()))
+        .collect();
+    let delivered: usize = repeats.iter().map(|repeat| repeat.delivered).sum();
+    Ok(Evaluation {
+        tree: to_text(tree, experiment.catalogue()),
+        mean: means.iter().map(|(_, mean)| mean).sum::<f64>() / means.len() as f64,
+        standard_error: standard_error(&means),
+        delivered_share: delivered as f64 / (protocol.repeats * protocol.trials) as f64,
+        repeats,
+        control_steps,
+    })
+}
+
+fn one_repeat<W: World>(
+    experiment: &Experiment<W>,
+    tree: &Tree,
+    protocol: &Protocol,
+    repeat: usize,
+    skills: &Skills,
+    gate: &Gate,
+) -> Result<(Repeat, u64), Stopped> {
+    let Experiment {
+        scenario,
+        world,
+        encoder,
+        ..
+    } = experiment;
+    let limit = scenario.evolution.trial_step_limit;
+    let mut rng = stream(protocol.seed, 0, repeat as u64, Purpose::Evaluation);
+    let newborn = experiment.newborn(tree.clone());
+    let mut agent = Agent::new(
+        world,
+        encoder,
+        &scenario.learning,
+        newborn,
+        skills.clone(),
+        limit,
+    );
+    let mut control_steps = 0;
+    let mut scored = Repeat {
+        steps: Vec::with_capacity(protocol.trials),
+        delivered: 0,
+        bank: repeat % protocol.banks,
+    };
+    for trial in 0..protocol.warmup + protocol.trials {
+        let start = world.draw_start(&mut rng);
+        let over = agent.run_trial(&start, limit, &mut rng, gate)?;
+        control_steps += u64::from(over.steps);
+        if trial >= protocol.warmup {
+            scored.steps.push(over.steps);
+            scored.delivered += usize::from(over.done);
+        }
+    }
+    Ok((scored, control_steps))
+}
+
+impl Repeat {
+    fn mean(&self) -> f64 {
+        self.steps
+            .iter()
+            .map(|&steps| f64::from(steps))
+            .sum::<f64>()
+            / self.steps.len() as f64
+    }
+}
+
+/// Standard error of the mean of grouped values, from the variance components of a
+/// one-way random-effects model; a negative component counts as none. With one group
+/// the groups' variance cannot be known and is left out.
+fn standard_error(values: &[(usize, f64)]) -> Option<f64> {
+    let n = values.len() as f64;
+    if values.len() < 2 {
+        return None;
+    }
+    let mean = values.iter().map(|(_, value)| value).sum::<f64>() / n;
+    let total: f64 = values.iter().map(|(_, value)| (value - mean).powi(2)).sum();
+    let groups = values
+        .iter()
+        .map(|(group, _)| group + 1)
+        .max()
+        .unwrap_or(1)
+        .min(values.len());
+    let between: f64 = (0..groups)
+        .map(|group| {
+            let members = values.iter().filter(|(of, _)| *of == group);
+            let (count, sum) = members.fold((0.0, 0.0), |(c, s), (_, value)| (c + 1.0, s + value));
+            if count == 0.0 {
+                0.0
+            } else {
+                count * (sum / count - mean).powi(2)
+            }
+        })
+        .sum();
+    let simple = total / (n - 1.0) / n;
+    let grouped = if groups > 1 {
+        between / (groups as f64 - 1.0) / n
+    } else {
+        0.0
+    };
+    Some(simple.max(grouped).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_between_groups_count_in_full() {
+        let alike = [(0, 1.0), (1, 1.0), (0, 3.0), (1, 3.0)];
+        // Variance 4/3 of four values.
+        assert!((standard_error(&alike).unwrap() - (1.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+        let apart = [(0, 1.0), (1, 3.0), (0, 1.0), (1, 3.0)];
+        // Two groups with means 1 and 3: variance 2 of the group means, over two groups.
+        assert!((standard_error(&apart).unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(standard_error(&[(0, 5.0)]), None);
+    }
+}

@@ -1,0 +1,30 @@
+//! Learning: features, action selection, primitive subtasks, MAXQ-Q.
+//!
+//! The room is generic over [`World`](crate::worlds::World). Learned values are
+//! single precision. Every sum has a fixed order, no operation is left to the
+//! processor's or the platform's taste (`libm`, no fused multiply-add), so the same
+//! seed gives the same bits everywhere.
+
+mod agent;
+mod exponential;
+mod features;
+mod gate;
+mod hierarchy;
+mod linear;
+mod observe;
+mod plan;
+mod policy;
+mod selection;
+mod situation;
+mod skills;
+mod training;
+
+pub use agent::{Agent, Trial};
+pub use features::{Encoder, Features};
+pub use gate::{Gate, Stopped};
+pub use hierarchy::{CompositeValues, Hierarchy};
+pub use observe::{Observer, Update};
+pub use policy::{PolicySamples, SelectionProbabilities, average};
+pub use selection::Softmax;
+pub use skills::{Skill, Skills};
+pub use training::train;

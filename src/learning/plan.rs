@@ -1,0 +1,94 @@
+//! What an agent needs to know of a tree at every step, worked out once.
+
+use crate::hierarchy::{Tree, able};
+use crate::worlds::{Catalogue, MapId, StateType, StateTypes, SubtaskId};
+
+/// A node of the tree, prepared for execution.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlanNode {
+    pub(super) subtask: SubtaskId,
+    pub(super) map: MapId,
+    active: StateTypes,
+    pub(super) goal: StateTypes,
+    pub(super) parent: Option<usize>,
+    /// Padded length of one block of features.
+    pub(super) stride: usize,
+    /// Padded length of one parameter vector: a block per active state type.
+    pub(super) vector: usize,
+    /// The place among its parent's children.
+    pub(super) slot: usize,
+    /// The place among the catalogue's primitives; `None` for a composite subtask.
+    pub(super) skill: Option<usize>,
+}
+
+/// A tree prepared for execution.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    pub(super) nodes: Vec<PlanNode>,
+    /// For each node and state type, the terminal one too, the end of its choices.
+    ends: Vec<usize>,
+    /// The children that can act, one list after the other.
+    children: Vec<usize>,
+    types: usize,
+}
+
+impl Plan {
+    pub(super) fn new(tree: &Tree, catalogue: &Catalogue, width: impl Fn(MapId) -> usize) -> Self {
+        let able = able(tree, catalogue);
+        let types = catalogue.state_types.len() + 1;
+        let mut plan = Self {
+            nodes: Vec::new(),
+            ends: vec![0],
+            children: Vec::new(),
+            types,
+        };
+        for (index, node) in tree.nodes().iter().enumerate() {
+            let subtask = catalogue.subtask(node.subtask);
+            let stride = width(subtask.map);
+            let siblings = node.parent.map(|parent| tree.children(parent));
+            plan.nodes.push(PlanNode {
+                subtask: node.subtask,
+                map: subtask.map,
+                active: subtask.active,
+                goal: subtask.goal(),
+                parent: node.parent,
+                stride,
+                vector: subtask.active.len() * stride,
+                slot: siblings.map_or(0, |mut all| all.position(|s| s == index).unwrap_or(0)),
+                skill: catalogue.primitives().position(|p| p == node.subtask),
+            });
+            for state_type in (0..types).map(|t| StateType(t as u8)) {
+                let acts = able[index].contains(state_type);
+                let choices = tree.children(index).filter(|_| acts);
+                plan.children
+                    .extend(choices.filter(|&child| able[child].contains(state_type)));
+                plan.ends.push(plan.children.len());
+            }
+        }
+        plan
+    }
+
+    /// The children among which a composite subtask chooses in a state type; none
+    /// where the subtask terminates.
+    #[inline(always)]
+    pub(super) fn choices(&self, node: usize, state_type: StateType) -> &[usize] {
+        let list = node * self.types + usize::from(state_type.0);
+        &self.children[self.ends[list]..self.ends[list + 1]]
+    }
+
+    /// Whether a subtask can act in a state type.
+    pub(super) fn can_act(&self, node: usize, state_type: StateType) -> bool {
+        match self.nodes[node].skill {
+            Some(_) => self.nodes[node].active.contains(state_type),
+            None => !self.choices(node, state_type).is_empty(),
+        }
+    }
+
+    /// Where the C~ of `child` lies in its parent's parameters for a state type; the
+    /// C lies one parameter vector further on.
+    #[inline(always)]
+    pub(super) fn block(&self, child: usize, parent: usize, state_type: StateType) -> usize {
+        let node = &self.nodes[parent];
+        2 * self.nodes[child].slot * node.vector + node.active.rank(state_type) * node.stride
+    }
+}

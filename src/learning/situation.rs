@@ -1,0 +1,197 @@
+//! The values of a whole hierarchy in one state, each computed when first needed.
+
+use super::features::{Encoder, Features};
+use super::hierarchy::CompositeValues;
+use super::linear;
+use super::plan::Plan;
+use super::skills::Skills;
+use crate::worlds::StateType;
+
+/// What decides an agent's values: its hierarchy and its primitive subtasks.
+#[derive(Clone, Debug)]
+pub(super) struct Mind<'r> {
+    pub(super) encoder: &'r Encoder,
+    pub(super) plan: Plan,
+    /// In the order of the nodes; empty for primitive subtasks.
+    pub(super) values: Vec<Option<CompositeValues>>,
+    pub(super) skills: Skills,
+}
+
+/// A value with the number of the state that it was computed in.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cached {
+    state: u64,
+    value: f32,
+}
+
+/// The action values of a primitive subtask.
+#[derive(Clone, Debug)]
+struct SkillValues {
+    state: u64,
+    actions: Vec<f32>,
+    best: f32,
+}
+
+/// One state, with the values computed in it so far.
+#[derive(Clone, Debug)]
+pub(super) struct Situation {
+    pub(super) state_type: StateType,
+    pub(super) features: Features,
+    /// The number of the state; cached values of another number are void.
+    state: u64,
+    skills: Vec<SkillValues>,
+    /// For each node but the root: C~ and C of its parent for it.
+    completions: Vec<[Cached; 2]>,
+    /// V of each composite node.
+    projected: Vec<Cached>,
+}
+
+/// Which of the two completion functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Completion {
+    /// C~, with pseudo-rewards, which the subtask chooses by.
+    Inside = 0,
+    /// C, which its parent sees.
+    Outside = 1,
+}
+
+impl Situation {
+    pub(super) fn new(mind: &Mind<'_>, terminal: StateType) -> Self {
+        let nodes = mind.plan.nodes.len();
+        let skills = mind.skills.all().iter();
+        Self {
+            state_type: terminal,
+            features: mind.encoder.features(),
+            state: 0,
+            skills: skills
+                .map(|skill| SkillValues {
+                    state: 0,
+                    actions: vec![0.0; skill.vectors().count()],
+                    best: 0.0,
+                })
+                .collect(),
+            completions: vec![[Cached::default(); 2]; nodes],
+            projected: vec![Cached::default(); nodes],
+        }
+    }
+
+    /// Holds another state from now on.
+    #[inline]
+    pub(super) fn load(&mut self, state_type: StateType, inputs: &[f32]) {
+        self.state_type = state_type;
+        self.features.load(inputs);
+        self.state += 1;
+    }
+
+    /// Forgets what changes with the completion functions for `child`: these, and
+    /// the values of all nodes above it.
+    #[inline]
+    pub(super) fn forget(&mut self, plan: &Plan, child: usize) {
+        self.completions[child] = [Cached::default(); 2];
+        let mut node = child;
+        while let Some(parent) = plan.nodes[node].parent {
+            self.projected[parent].state = 0;
+            node = parent;
+        }
+    }
+}
+
+impl Mind<'_> {
+    /// Q_prim of all actions of a primitive subtask (Thesis Eq. 3.9).
+    #[inline]
+    pub(super) fn action_values<'s>(&self, now: &'s mut Situation, skill: usize) -> &'s [f32] {
+        self.evaluate_skill(now, skill);
+        &now.skills[skill].actions
+    }
+
+    #[inline]
+    fn evaluate_skill(&self, now: &mut Situation, index: usize) {
+        let values = &mut now.skills[index];
+        if values.state == now.state {
+            return;
+        }
+        values.state = now.state;
+        let skill = &self.skills.all()[index];
+        let features = self.encoder.encode(skill.map, &mut now.features);
+        values.best = f32::NEG_INFINITY;
+        for (value, vector) in values.actions.iter_mut().zip(skill.padded()) {
+            *value = linear::value(vector, features);
+            values.best = values.best.max(*value);
+        }
+    }
+
+    /// V(i, s) of a node, Algorithm 2.5 with Eq. 3.2: choose the child with C~, return
+    /// with C. The node can act in the state.
+    pub(super) fn projected_value(&self, now: &mut Situation, node: usize) -> f32 {
+        if let Some(skill) = self.plan.nodes[node].skill {
+            self.evaluate_skill(now, skill);
+            return now.skills[skill].best;
+        }
+        let cached = now.projected[node];
+        if cached.state == now.state {
+            return cached.value;
+        }
+        let (best, projected) = self.best_child(now, node);
+        let value = projected + self.completion(now, node, best, Completion::Outside);
+        now.projected[node] = Cached {
+            state: now.state,
+            value,
+        };
+        value
+    }
+
+    /// The child a* that maximises C~ + V, the first of equals, and its V.
+    pub(super) fn best_child(&self, now: &mut Situation, node: usize) -> (usize, f32) {
+        let mut best = (node, 0.0);
+        let mut highest = f32::NEG_INFINITY;
+        for &child in self.plan.choices(node, now.state_type) {
+            let projected = self.projected_value(now, child);
+            let value = projected + self.completion(now, node, child, Completion::Inside);
+            if value > highest {
+                highest = value;
+                best = (child, projected);
+            }
+        }
+        best
+    }
+
+    /// C~(i, s, a) or C(i, s, a) for a child of a node (Thesis Eq. 3.7, 3.8).
+    #[inline]
+    pub(super) fn completion(
+        &self,
+        now: &mut Situation,
+        node: usize,
+        child: usize,
+        which: Completion,
+    ) -> f32 {
+        let cached = now.completions[child][which as usize];
+        if cached.state == now.state {
+            return cached.value;
+        }
+        let plan = &self.plan.nodes[node];
+        let offset = self.plan.block(child, node, now.state_type) + which as usize * plan.vector;
+        let parameters = self.parameters(node);
+        let features = self.encoder.encode(plan.map, &mut now.features);
+        let value = linear::value(&parameters[offset..offset + plan.stride], features);
+        now.completions[child][which as usize] = Cached {
+            state: now.state,
+            value,
+        };
+        value
+    }
+
+    #[inline]
+    fn parameters(&self, node: usize) -> &[f32] {
+        self.values[node]
+            .as_ref()
+            .map_or(&[], |values| &values.parameters)
+    }
+
+    /// Temperature of a composite node.
+    #[inline]
+    pub(super) fn temperature(&self, node: usize) -> f32 {
+        self.values[node]
+            .as_ref()
+            .map_or(1.0, |values| values.temperature)
+    }
+}

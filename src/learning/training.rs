@@ -1,0 +1,73 @@
+//! Training of the primitive subtasks before evolution starts (Thesis 3.1, 4.2).
+
+use rand::RngExt;
+
+use super::features::Encoder;
+use super::gate::{Gate, Stopped};
+use super::linear;
+use super::selection::{Softmax, uniform};
+use super::skills::Skill;
+use crate::random::Stream;
+use crate::scenario::{Exploration, LearningModel};
+use crate::worlds::{SubtaskId, World};
+
+/// Trains one primitive subtask, alone, by Thesis Eq. 3.6: the value of an action is
+/// the reward of the next step, without prediction.
+///
+/// An episode starts where the world lets the subtask be trained and ends after its
+/// number of steps or when the world says so. With softmax exploration the
+/// temperature falls at the end of each *episode*: falling at every step it would be
+/// cold before rare inputs, such as targets at the edge of the view, were seen.
+///
+/// # Errors
+/// When the gate is stopped.
+pub fn train<W: World>(
+    world: &W,
+    encoder: &Encoder,
+    model: &LearningModel,
+    primitive: SubtaskId,
+    rng: &mut Stream,
+    gate: &Gate,
+) -> Result<Skill, Stopped> {
+    let catalogue = world.catalogue();
+    let map = catalogue.subtask(primitive).map;
+    let actions = catalogue.subtask(primitive).actions();
+    let training = world.training(primitive);
+    let softmax = Softmax::new(model);
+    let limit = model.temperature_limit as f32;
+    let mut temperature = model.initial_temperature as f32;
+    let mut skill = Skill::new(primitive, catalogue, model.initial_parameter as f32);
+    let mut features = encoder.features();
+    let mut values = vec![0.0; actions];
+    let mut steps = 0;
+    while steps < training.steps {
+        let Some(mut state) = world.begin_training(primitive, rng) else {
+            return Ok(skill);
+        };
+        for _ in 0..training.episode_steps.min(training.steps - steps) {
+            features.load(world.percept(&state).as_ref());
+            let features = encoder.encode(map, &mut features);
+            for (value, vector) in values.iter_mut().zip(skill.padded()) {
+                *value = linear::value(vector, features);
+            }
+            let action = match training.exploration {
+                Exploration::Uniform => uniform(rng.random(), actions),
+                Exploration::Softmax => softmax.choose(&values, temperature, rng),
+            };
+            let before = state.clone();
+            let reward = world.step(&mut state, primitive, action, rng);
+            let error = reward - values[action];
+            skill.learn(action, features, model.learning_rate as f32 * error);
+            steps += 1;
+            if steps % Gate::STRIDE == 0 {
+                gate.pass(Gate::STRIDE)?;
+            }
+            if !world.training_goes_on(primitive, &before, &mut state) {
+                break;
+            }
+        }
+        temperature = (temperature * training.temperature_decrease as f32).max(limit);
+    }
+    gate.pass(steps % Gate::STRIDE)?;
+    Ok(skill)
+}

@@ -1,0 +1,2 @@
+//! The `maxq-lab` program.
+fn main() {}

@@ -1,0 +1,368 @@
+//! The foraging task of thesis chapter 4 as a scenario describes it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::defaults as d;
+
+/// A robot finds a battery, captures it and brings it to the nest (Thesis 4.2).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ForagingModel {
+    /// Walls, batteries and the nest.
+    pub arena: ArenaModel,
+    /// Body of the robot and the distances at which it captures and delivers.
+    #[serde(default)]
+    pub robot: RobotModel,
+    /// Proximity sensors, vision and their noise.
+    #[serde(default)]
+    pub sensors: SensorModel,
+    /// Actions and rewards of the five primitive subtasks (Thesis Table 4.4, Eq. 4.1).
+    #[serde(default)]
+    pub primitives: PrimitiveModels,
+    /// Numbers of RBF centres (Thesis Table 4.6).
+    #[serde(default)]
+    pub features: FeatureModel,
+    /// How the primitive subtasks are trained before evolution starts.
+    #[serde(default)]
+    pub primitive_training: TrainingModels,
+    /// Length of a time step in seconds.
+    #[serde(default = "time_step")]
+    pub time_step_s: f64,
+}
+
+fn time_step() -> f64 {
+    d::TIME_STEP_S
+}
+
+/// A closed rectangle from the origin to `size_mm`, with what is in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArenaModel {
+    /// Extent along x and y in millimetres; the four outer walls stand on its edges.
+    #[serde(default = "arena_size")]
+    pub size_mm: [f64; 2],
+    /// Inner walls, each a segment `[x1, y1, x2, y2]`.
+    #[serde(default)]
+    pub walls_mm: Vec<[f64; 4]>,
+    /// Inner walls with slits in them.
+    #[serde(default)]
+    pub fences: Vec<FenceModel>,
+    /// Centres of the battery packs, `[x, y]`.
+    pub batteries_mm: Vec<[f64; 2]>,
+    /// Centre of the nest, `[x, y]`.
+    pub nest_mm: [f64; 2],
+}
+
+fn arena_size() -> [f64; 2] {
+    [d::ARENA_SIDE_MM; 2]
+}
+
+/// A straight wall with slits narrower than the robot: it can be seen through but
+/// not passed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FenceModel {
+    /// One end, `[x, y]`.
+    pub from_mm: [f64; 2],
+    /// The other end, `[x, y]`.
+    pub to_mm: [f64; 2],
+    /// Width of every slit.
+    pub slit_width_mm: f64,
+    /// Distances of the slits' centres from `from_mm`, ascending.
+    pub slits_at_mm: Vec<f64>,
+}
+
+impl FenceModel {
+    /// Distance between the two ends in millimetres.
+    #[must_use]
+    pub fn length_mm(&self) -> f64 {
+        let [x1, y1] = self.from_mm;
+        let [x2, y2] = self.to_mm;
+        ((x2 - x1) * (x2 - x1) + (y2 - y1) * (y2 - y1)).sqrt()
+    }
+
+    /// The solid pieces between the slits, as walls `[x1, y1, x2, y2]`.
+    #[must_use]
+    pub fn pieces(&self) -> Vec<[f64; 4]> {
+        let length = self.length_mm();
+        let half = self.slit_width_mm / 2.0;
+        let starts = std::iter::once(0.0).chain(self.slits_at_mm.iter().map(|at| at + half));
+        let ends = self
+            .slits_at_mm
+            .iter()
+            .map(|at| at - half)
+            .chain(std::iter::once(length));
+        let point = |along: f64| {
+            let share = along / length;
+            [0, 1].map(|axis| self.from_mm[axis] + share * (self.to_mm[axis] - self.from_mm[axis]))
+        };
+        starts
+            .zip(ends)
+            .map(|(start, end)| {
+                let ([x1, y1], [x2, y2]) = (point(start), point(end));
+                [x1, y1, x2, y2]
+            })
+            .collect()
+    }
+}
+
+/// The robot: a disc with two driven wheels.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RobotModel {
+    /// Radius of the body.
+    pub radius_mm: f64,
+    /// Distance between the wheels.
+    pub wheel_base_mm: f64,
+    /// A visible battery nearer than this is captured.
+    pub capture_distance_mm: f64,
+    /// A visible nest nearer than this is reached by a carrying robot.
+    pub delivery_distance_mm: f64,
+}
+
+impl Default for RobotModel {
+    fn default() -> Self {
+        Self {
+            radius_mm: d::ROBOT_RADIUS_MM,
+            wheel_base_mm: d::WHEEL_BASE_MM,
+            capture_distance_mm: d::CAPTURE_DISTANCE_MM,
+            delivery_distance_mm: d::DELIVERY_DISTANCE_MM,
+        }
+    }
+}
+
+/// What the robot senses (Thesis 4.1).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SensorModel {
+    /// Directions of the five proximity sensors, relative to the heading, positive
+    /// to the left.
+    pub proximity_angles_deg: [f64; 5],
+    /// Smallest and largest proximity reading, measured from the body's surface.
+    pub proximity_range_mm: [f64; 2],
+    /// A target is visible within this angle of the heading.
+    pub vision_half_angle_deg: f64,
+    /// A target is visible within this distance of the robot's centre.
+    pub vision_range_mm: f64,
+    /// Relative noise: a reading is multiplied by 1 + u, u uniform in plus or minus
+    /// this, and then clipped to its range.
+    pub noise: f64,
+}
+
+impl Default for SensorModel {
+    fn default() -> Self {
+        Self {
+            proximity_angles_deg: d::PROXIMITY_ANGLES_DEG,
+            proximity_range_mm: d::PROXIMITY_RANGE_MM,
+            vision_half_angle_deg: d::VISION_HALF_ANGLE_DEG,
+            vision_range_mm: d::VISION_RANGE_MM,
+            noise: d::SENSOR_NOISE,
+        }
+    }
+}
+
+/// The five primitive subtasks (Thesis Tables 4.3 and 4.4, Eq. 4.1).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct PrimitiveModels {
+    /// Avoid hitting walls.
+    pub avoid: MovementModel,
+    /// Explore the environment.
+    pub wander: MovementModel,
+    /// Approach and capture a battery.
+    pub approach_battery: TargetModel,
+    /// Bring the battery to the nest.
+    pub approach_nest: TargetModel,
+    /// Rotate to a battery or the nest.
+    pub turn: TargetModel,
+}
+
+impl Default for PrimitiveModels {
+    fn default() -> Self {
+        let approach = TargetModel {
+            actions_mm_per_s: d::APPROACH_ACTIONS.to_vec(),
+            reward_offset: 0.0,
+            reward_divisor_deg: d::APPROACH_REWARD_DIVISOR_DEG,
+            failure_reward: d::FAILURE_REWARD,
+        };
+        Self {
+            avoid: MovementModel {
+                actions_mm_per_s: d::AVOID_ACTIONS.to_vec(),
+                rewards: d::AVOID_REWARDS.to_vec(),
+                failure_reward: d::FAILURE_REWARD,
+            },
+            wander: MovementModel {
+                actions_mm_per_s: d::WANDER_ACTIONS.to_vec(),
+                rewards: d::WANDER_REWARDS.to_vec(),
+                failure_reward: d::FAILURE_REWARD,
+            },
+            approach_battery: approach.clone(),
+            approach_nest: approach,
+            turn: TargetModel {
+                actions_mm_per_s: d::TURN_ACTIONS.to_vec(),
+                reward_offset: d::TURN_REWARD_OFFSET,
+                reward_divisor_deg: d::TURN_REWARD_DIVISOR_DEG,
+                failure_reward: d::FAILURE_REWARD,
+            },
+        }
+    }
+}
+
+/// A primitive subtask that is rewarded for its movement: Avoid, Wander.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MovementModel {
+    /// Actions as `[right, left]` wheel speeds, in that order.
+    pub actions_mm_per_s: Vec<[f64; 2]>,
+    /// Reward of each action while no wall is too near.
+    pub rewards: Vec<f64>,
+    /// Reward when the smallest proximity reading is at the lower end of its range.
+    pub failure_reward: f64,
+}
+
+/// A primitive subtask that is rewarded for a small angle to its target: Approach
+/// battery, Approach nest, Turn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TargetModel {
+    /// Actions as `[right, left]` wheel speeds, in that order.
+    pub actions_mm_per_s: Vec<[f64; 2]>,
+    /// The reward is `reward_offset` minus the angle over `reward_divisor_deg`.
+    pub reward_offset: f64,
+    /// The angle to the target, in degrees, is divided by this.
+    pub reward_divisor_deg: f64,
+    /// Reward when the target is not visible.
+    pub failure_reward: f64,
+}
+
+/// Numbers of RBF centres along each input (Thesis Table 4.6).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct FeatureModel {
+    /// Per proximity sensor; their product over five sensors is the width of Find
+    /// battery, Find nest, Avoid and Wander, and of each state type's block in
+    /// Capture, Deliver and Root.
+    pub proximity_centres: usize,
+    /// Over the angle, in Visible battery and Visible nest.
+    pub angle_centres: usize,
+    /// Over the distance, in Visible battery and Visible nest.
+    pub distance_centres: usize,
+    /// Over the angle, in Approach battery and Approach nest.
+    pub approach_centres: usize,
+    /// Over the angle, in Turn.
+    pub turn_centres: usize,
+    /// What "the variance of the RBFs is sqrt(2) times their spacing" (Thesis 4.4) means.
+    pub rbf_width: RbfWidth,
+}
+
+impl Default for FeatureModel {
+    fn default() -> Self {
+        Self {
+            proximity_centres: d::PROXIMITY_CENTRES,
+            angle_centres: d::ANGLE_CENTRES,
+            distance_centres: d::DISTANCE_CENTRES,
+            approach_centres: d::APPROACH_CENTRES,
+            turn_centres: d::TURN_CENTRES,
+            rbf_width: RbfWidth::default(),
+        }
+    }
+}
+
+/// Width of the Gaussian features, from the spacing h of their centres on [0, 1].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RbfWidth {
+    /// sigma = sqrt(2) h.
+    #[default]
+    Spacing,
+    /// sigma^2 = sqrt(2) h.
+    Variance,
+}
+
+/// Training of the primitive subtasks, each alone, in the scenario's own arena.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TrainingModels {
+    /// Training of Avoid.
+    pub avoid: TrainingModel,
+    /// Training of Wander.
+    pub wander: TrainingModel,
+    /// Training of Approach battery.
+    pub approach_battery: TrainingModel,
+    /// Training of Approach nest.
+    pub approach_nest: TrainingModel,
+    /// Training of Turn.
+    pub turn: TrainingModel,
+}
+
+impl Default for TrainingModels {
+    fn default() -> Self {
+        let exploring = TrainingModel {
+            steps: d::TRAINING_STEPS,
+            episode_steps: d::EXPLORING_EPISODE_STEPS,
+            exploration: Exploration::Uniform,
+            temperature_decrease: d::TEMPERATURE_DECREASE_SLOW,
+        };
+        let targeting = TrainingModel {
+            steps: d::TRAINING_STEPS,
+            episode_steps: d::TARGET_EPISODE_STEPS,
+            exploration: Exploration::Softmax,
+            temperature_decrease: d::TEMPERATURE_DECREASE,
+        };
+        Self {
+            avoid: exploring.clone(),
+            wander: exploring,
+            approach_battery: targeting.clone(),
+            approach_nest: targeting.clone(),
+            turn: targeting,
+        }
+    }
+}
+
+/// Training of one primitive subtask.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingModel {
+    /// Time steps in all.
+    pub steps: u32,
+    /// Time steps after which an episode ends and the robot is put elsewhere.
+    pub episode_steps: u32,
+    /// How actions are chosen while training.
+    pub exploration: Exploration,
+    /// With `softmax`: the temperature is multiplied by this at the end of each episode.
+    pub temperature_decrease: f64,
+}
+
+/// Choice of actions while a primitive subtask is trained.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Exploration {
+    /// All actions alike.
+    Uniform,
+    /// Softmax with a temperature that falls from episode to episode.
+    Softmax,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fence_is_cut_at_its_slits() {
+        let fence = FenceModel {
+            from_mm: [2000.0, 1400.0],
+            to_mm: [2000.0, 2000.0],
+            slit_width_mm: 44.0,
+            slits_at_mm: vec![60.0, 180.0],
+        };
+        assert_eq!(
+            fence.pieces(),
+            [
+                [2000.0, 1400.0, 2000.0, 1438.0],
+                [2000.0, 1482.0, 2000.0, 1558.0],
+                [2000.0, 1602.0, 2000.0, 2000.0],
+            ]
+        );
+    }
+}

@@ -1,0 +1,152 @@
+//! What an experiment is: the JSON model of a scenario, its defaults and its rules.
+//!
+//! A scenario file names a world, the settings of learning and the settings of
+//! evolution. Whatever it leaves out has a default with a source ([`defaults`]);
+//! whatever it says that does not exist or cannot be is an error that names the
+//! file, the place, the value found and the values allowed.
+
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub mod defaults;
+mod embedded;
+mod error;
+mod foraging;
+mod overrides;
+mod settings;
+mod validate;
+
+pub use embedded::{EMBEDDED, Embedded};
+pub use error::{Problem, ScenarioError};
+pub use foraging::{
+    ArenaModel, Exploration, FeatureModel, FenceModel, ForagingModel, MovementModel,
+    PrimitiveModels, RbfWidth, RobotModel, SensorModel, TargetModel, TrainingModel, TrainingModels,
+};
+pub use settings::{
+    CompletionBootstrap, CompositeChoice, CoolOn, EvolutionModel, Inheritance, LearningModel,
+    PrimitiveLearning, PseudoReward, Selection,
+};
+
+/// The version of the scenario format that this program reads.
+pub const FORMAT: u32 = 1;
+
+/// Largest scenario file that is read, in bytes; the shipped ones are a hundredth of it.
+pub const MAX_FILE_BYTES: u64 = 1 << 20;
+
+/// A whole experiment: a world, how its agents learn, how their hierarchies evolve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "maxq-lab scenario")]
+pub struct Scenario {
+    /// Version of this format; 1.
+    pub format: u32,
+    /// Short name, used in run folders: lower-case letters, digits, `-`, `_` and `.`.
+    pub name: String,
+    /// What the scenario is for, in a sentence.
+    #[serde(default)]
+    pub description: String,
+    /// Where the agent acts.
+    pub world: WorldModel,
+    /// How it learns.
+    #[serde(default)]
+    pub learning: LearningModel,
+    /// How hierarchies evolve.
+    pub evolution: EvolutionModel,
+}
+
+/// The world of a scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WorldModel {
+    /// The foraging task of thesis chapter 4.
+    Foraging(ForagingModel),
+}
+
+impl Scenario {
+    /// Reads a scenario by `name`: a file where there is one, else an embedded scenario.
+    ///
+    /// # Errors
+    /// When neither exists, or the file cannot be read, is too large, is not JSON of
+    /// this model, or breaks a rule.
+    pub fn load(name: &str) -> Result<Self, ScenarioError> {
+        let path = Path::new(name);
+        if path.is_file() {
+            return Self::read(path);
+        }
+        match EMBEDDED.iter().find(|embedded| embedded.name == name) {
+            Some(embedded) => Self::parse(embedded.json, embedded.name),
+            None => Err(ScenarioError::NotFound {
+                name: name.to_owned(),
+            }),
+        }
+    }
+
+    /// Reads the scenario file at `path`.
+    ///
+    /// # Errors
+    /// As [`Scenario::load`].
+    pub fn read(path: &Path) -> Result<Self, ScenarioError> {
+        let file = path.display().to_string();
+        let text = crate::files::read_text(path, MAX_FILE_BYTES).map_err(|source| {
+            ScenarioError::Read {
+                file: file.clone(),
+                source,
+            }
+        })?;
+        Self::parse(&text, &file)
+    }
+
+    /// Parses and checks scenario `text`; `file` names it in errors.
+    ///
+    /// # Errors
+    /// When the text is not JSON of this model or breaks a rule.
+    pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
+        let mut json = serde_json::Deserializer::from_str(text);
+        let parsed = serde_path_to_error::deserialize::<_, Self>(&mut json)
+            .map_err(|error| ScenarioError::syntax(file, &error))
+            .and_then(|scenario| match json.end() {
+                Ok(()) => Ok(scenario),
+                Err(error) => Err(ScenarioError::trailing(file, &error)),
+            })?;
+        parsed.checked(file)
+    }
+
+    /// This scenario with `key=value` settings applied in order.
+    ///
+    /// A key is a dotted path as `maxq-lab check --format json` prints it, such as
+    /// `learning.discount` or `world.foraging.arena.batteries_mm.0`; a value is JSON,
+    /// or else taken as a string.
+    ///
+    /// # Errors
+    /// When a setting is malformed, names no existing key, or breaks a rule.
+    pub fn with_settings(self, settings: &[String]) -> Result<Self, ScenarioError> {
+        if settings.is_empty() {
+            return Ok(self);
+        }
+        overrides::apply(&self, settings)?.checked("--set")
+    }
+
+    /// This scenario if it obeys every rule; `file` names it in errors.
+    ///
+    /// # Errors
+    /// With all rules that are broken.
+    pub fn checked(self, file: &str) -> Result<Self, ScenarioError> {
+        let problems = validate::problems(&self);
+        if problems.is_empty() {
+            Ok(self)
+        } else {
+            Err(ScenarioError::Invalid {
+                file: file.to_owned(),
+                problems,
+            })
+        }
+    }
+
+    /// The JSON Schema of scenario files.
+    #[must_use]
+    pub fn schema() -> schemars::Schema {
+        schemars::schema_for!(Scenario)
+    }
+}

@@ -1,0 +1,301 @@
+//! What a world tells about its subtasks: names, active states, goals, inputs.
+
+use std::fmt;
+
+/// The type of a state, numbered from 0; the worlds' documentation, and all that a
+/// person sees, numbers them from 1 as Thesis Table 4.1 does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct StateType(pub u8);
+
+impl StateType {
+    /// The number a person sees.
+    #[must_use]
+    pub fn number(self) -> usize {
+        usize::from(self.0) + 1
+    }
+}
+
+/// A set of state types.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct StateTypes(u32);
+
+impl StateTypes {
+    /// The set of the given types.
+    #[must_use]
+    pub const fn of(types: &[StateType]) -> Self {
+        let mut bits = 0;
+        let mut i = 0;
+        while i < types.len() {
+            bits |= 1 << types[i].0;
+            i += 1;
+        }
+        Self(bits)
+    }
+
+    /// Whether the set holds `state_type`.
+    #[must_use]
+    pub const fn contains(self, state_type: StateType) -> bool {
+        self.0 & (1 << state_type.0) != 0
+    }
+
+    /// Whether the two sets share a type.
+    #[must_use]
+    pub const fn meets(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// Whether every type of this set is in the other.
+    #[must_use]
+    pub const fn is_subset_of(self, other: Self) -> bool {
+        self.0 & !other.0 == 0
+    }
+
+    /// The types of both sets.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// The types that are in both sets.
+    #[must_use]
+    pub const fn intersection(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    /// How many types the set holds.
+    #[must_use]
+    pub const fn len(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
+    /// Whether the set is empty.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// How many types of the set come before `state_type`: the place of its block
+    /// among the one-hot blocks of a subtask's parameters.
+    #[must_use]
+    pub const fn rank(self, state_type: StateType) -> usize {
+        (self.0 & ((1 << state_type.0) - 1)).count_ones() as usize
+    }
+
+    /// The types in ascending order.
+    pub fn iter(self) -> impl Iterator<Item = StateType> {
+        (0..u32::BITS as u8)
+            .map(StateType)
+            .filter(move |&state_type| self.contains(state_type))
+    }
+}
+
+impl fmt::Display for StateTypes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let numbers: Vec<_> = self.iter().map(|t| t.number().to_string()).collect();
+        f.write_str(&numbers.join(","))
+    }
+}
+
+/// A subtask of a catalogue: its index there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SubtaskId(pub u8);
+
+impl SubtaskId {
+    /// The root of every hierarchy comes first in a catalogue.
+    pub const ROOT: Self = Self(0);
+
+    /// The index into [`Catalogue::subtasks`].
+    #[must_use]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// A feature map of a catalogue: its index there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MapId(pub u8);
+
+impl MapId {
+    /// The index into [`Catalogue::maps`].
+    #[must_use]
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// One input of a feature map, covered by equidistant RBF centres from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// Index into the world's percept.
+    pub input: usize,
+    /// Number of centres, at least 2.
+    pub centres: usize,
+    /// Width sigma of the Gaussians.
+    pub sigma: f64,
+}
+
+/// A grid of normalised Gaussian features over some inputs (Thesis Eq. 2.22).
+#[derive(Clone, Debug, PartialEq)]
+pub struct FeatureMap {
+    /// What the map covers, for people.
+    pub name: &'static str,
+    /// The inputs; the last one varies fastest in the parameter vectors.
+    pub axes: Vec<Axis>,
+}
+
+impl FeatureMap {
+    /// Number of features: the product of the centres of all axes.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.axes.iter().map(|axis| axis.centres).product()
+    }
+}
+
+/// What kind of subtask it is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// Chooses among its children until it terminates.
+    Composite {
+        /// State types in which it has reached its goal (Thesis Table 4.2); the
+        /// terminal type may be among them.
+        goal: StateTypes,
+        /// Its weight in the structural difference (Thesis 4.5.2).
+        weight: u32,
+    },
+    /// Executes one of its actions for one time step.
+    Primitive {
+        /// What its actions do, for people; one entry an action.
+        actions: Vec<String>,
+    },
+}
+
+/// A subtask that a world provides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subtask {
+    /// Its name in hierarchies, such as `FindBattery`.
+    pub name: &'static str,
+    /// What it is for, in a few words.
+    pub purpose: &'static str,
+    /// State types in which it can be active (Thesis Tables 4.2 and 4.3).
+    pub active: StateTypes,
+    /// The inputs that its value functions are approximated over.
+    pub map: MapId,
+    /// Composite or primitive.
+    pub kind: Kind,
+}
+
+impl Subtask {
+    /// Whether this is a composite subtask.
+    #[must_use]
+    pub fn is_composite(&self) -> bool {
+        matches!(self.kind, Kind::Composite { .. })
+    }
+
+    /// Number of actions of a primitive subtask; 0 for a composite one.
+    #[must_use]
+    pub fn actions(&self) -> usize {
+        match &self.kind {
+            Kind::Primitive { actions } => actions.len(),
+            Kind::Composite { .. } => 0,
+        }
+    }
+
+    /// State types that are goals of a composite subtask; none for a primitive one.
+    #[must_use]
+    pub fn goal(&self) -> StateTypes {
+        match self.kind {
+            Kind::Composite { goal, .. } => goal,
+            Kind::Primitive { .. } => StateTypes::default(),
+        }
+    }
+}
+
+/// A state type for people.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateTypeInfo {
+    /// What is the case in such a state.
+    pub description: &'static str,
+}
+
+/// All subtasks of a world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Catalogue {
+    /// The non-terminal state types, in order.
+    pub state_types: Vec<StateTypeInfo>,
+    /// The subtasks; the root comes first, composites before primitives.
+    pub subtasks: Vec<Subtask>,
+    /// The feature maps.
+    pub maps: Vec<FeatureMap>,
+}
+
+impl Catalogue {
+    /// The subtask with this id.
+    #[must_use]
+    pub fn subtask(&self, id: SubtaskId) -> &Subtask {
+        &self.subtasks[id.index()]
+    }
+
+    /// The subtask with this name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<SubtaskId> {
+        self.ids().find(|&id| self.subtask(id).name == name)
+    }
+
+    /// All subtasks in order.
+    pub fn ids(&self) -> impl Iterator<Item = SubtaskId> + '_ {
+        (0..self.subtasks.len()).map(|index| SubtaskId(index as u8))
+    }
+
+    /// The composite subtasks in order.
+    pub fn composites(&self) -> impl Iterator<Item = SubtaskId> + '_ {
+        self.ids().filter(|&id| self.subtask(id).is_composite())
+    }
+
+    /// The primitive subtasks in order.
+    pub fn primitives(&self) -> impl Iterator<Item = SubtaskId> + '_ {
+        self.ids().filter(|&id| !self.subtask(id).is_composite())
+    }
+
+    /// The non-terminal state types in order.
+    pub fn types(&self) -> impl Iterator<Item = StateType> + '_ {
+        (0..self.state_types.len()).map(|index| StateType(index as u8))
+    }
+
+    /// The type of a state in which the overall task is done.
+    #[must_use]
+    pub fn terminal(&self) -> StateType {
+        StateType(self.state_types.len() as u8)
+    }
+
+    /// Number of features of a subtask's value functions (Thesis Table 4.6): those
+    /// of its map, for a composite once per state type it is active in.
+    #[must_use]
+    pub fn width(&self, id: SubtaskId) -> usize {
+        let subtask = self.subtask(id);
+        let blocks = if subtask.is_composite() {
+            subtask.active.len()
+        } else {
+            1
+        };
+        blocks * self.maps[subtask.map.index()].width()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_of_state_types_behave_as_sets() {
+        let of = |numbers: &[u8]| {
+            StateTypes::of(&numbers.iter().map(|&n| StateType(n)).collect::<Vec<_>>())
+        };
+        let (some, more) = (of(&[1, 3]), of(&[0, 1, 3]));
+        assert!(some.is_subset_of(more) && !more.is_subset_of(some));
+        assert!(some.meets(more) && !some.meets(of(&[0, 2])));
+        assert_eq!(some.union(of(&[0])), more);
+        assert_eq!(more.intersection(of(&[0, 2])), of(&[0]));
+        assert_eq!((more.len(), more.rank(StateType(3))), (3, 2));
+        assert_eq!(more.to_string(), "1,2,4");
+    }
+}

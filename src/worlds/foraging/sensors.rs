@@ -1,0 +1,133 @@
+//! What the robot senses: five proximity rays, and the nearest target in view.
+
+use nalgebra::{Point2, Vector2};
+use rand::RngExt;
+
+use super::arena::Arena;
+use super::catalogue::PROXIMITY_SENSORS;
+use super::motion::rotate;
+use crate::random::Stream;
+use crate::scenario::SensorModel;
+
+/// A reading of the vision system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetReading {
+    /// Angle to the target in degrees, positive to the left, noise included.
+    pub angle_deg: f32,
+    /// Distance to the target in millimetres, noise included.
+    pub distance_mm: f32,
+}
+
+/// The true place of a target relative to the robot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sighting {
+    pub(super) distance: f64,
+    /// The target in the frame of the robot, heading along +x.
+    relative: Vector2<f64>,
+}
+
+/// The sensors of the robot.
+#[derive(Clone, Debug)]
+pub(super) struct Sensors {
+    /// Directions of the proximity rays in the frame of the robot.
+    rays: [Vector2<f64>; PROXIMITY_SENSORS],
+    body_radius: f64,
+    pub(super) proximity_range: [f32; 2],
+    pub(super) vision_half_angle_deg: f32,
+    vision_half_angle_cos: f64,
+    pub(super) vision_range: f64,
+    noise: f32,
+}
+
+impl Sensors {
+    pub(super) fn new(model: &SensorModel, body_radius: f64) -> Self {
+        Self {
+            rays: model.proximity_angles_deg.map(|angle| {
+                let (sin, cos) = libm::sincos(angle.to_radians());
+                Vector2::new(cos, sin)
+            }),
+            body_radius,
+            proximity_range: model.proximity_range_mm.map(|range| range as f32),
+            vision_half_angle_deg: model.vision_half_angle_deg as f32,
+            vision_half_angle_cos: libm::cos(model.vision_half_angle_deg.to_radians()),
+            vision_range: model.vision_range_mm,
+            noise: model.noise as f32,
+        }
+    }
+
+    /// The largest distance from the robot's centre at which a wall can change a
+    /// proximity reading: noise comes before clipping.
+    pub(super) fn proximity_reach(model: &SensorModel, body_radius: f64) -> f64 {
+        body_radius + model.proximity_range_mm[1] / (1.0 - model.noise)
+    }
+
+    /// Proximity readings in millimetres from the body's surface, in the order of
+    /// the scenario's sensors.
+    pub(super) fn proximity(
+        &self,
+        arena: &Arena,
+        position: Point2<f64>,
+        heading: Vector2<f64>,
+        rng: &mut Stream,
+    ) -> [f32; PROXIMITY_SENSORS] {
+        let rays = self.rays.map(|ray| rotate(ray, heading));
+        let mut distances = [f64::INFINITY; PROXIMITY_SENSORS];
+        for wall in arena.near(position) {
+            let start = wall.start - position;
+            let to_line = start.perp(&wall.span);
+            for (ray, distance) in rays.iter().zip(&mut distances) {
+                // position + t ray = start + s span, solved by Cramer's rule.
+                let determinant = ray.perp(&wall.span);
+                let along = start.perp(ray) * determinant.signum();
+                if 0.0 <= along && along <= determinant.abs() {
+                    let t = to_line / determinant;
+                    if t >= 0.0 && t < *distance {
+                        *distance = t;
+                    }
+                }
+            }
+        }
+        let [low, high] = self.proximity_range;
+        distances.map(|distance| {
+            if distance.is_infinite() {
+                return high;
+            }
+            self.noisy((distance - self.body_radius) as f32, rng)
+                .clamp(low, high)
+        })
+    }
+
+    /// Where a target is, if the robot sees it.
+    pub(super) fn see(
+        &self,
+        arena: &Arena,
+        position: Point2<f64>,
+        heading: Vector2<f64>,
+        target: usize,
+    ) -> Option<Sighting> {
+        let offset = arena.target(target) - position;
+        let distance = offset.norm();
+        let ahead = heading.dot(&offset);
+        let in_view =
+            distance <= self.vision_range && ahead >= self.vision_half_angle_cos * distance;
+        (in_view && arena.in_sight(position, target)).then(|| Sighting {
+            distance,
+            relative: Vector2::new(ahead, heading.perp(&offset)),
+        })
+    }
+
+    /// The noisy reading of a target that is seen.
+    pub(super) fn read(&self, sighting: &Sighting, rng: &mut Stream) -> TargetReading {
+        let limit = self.vision_half_angle_deg;
+        let angle = libm::atan2f(sighting.relative.y as f32, sighting.relative.x as f32);
+        let range = self.vision_range as f32;
+        TargetReading {
+            angle_deg: self.noisy(angle.to_degrees(), rng).clamp(-limit, limit),
+            distance_mm: self.noisy(sighting.distance as f32, rng).clamp(0.0, range),
+        }
+    }
+
+    fn noisy(&self, reading: f32, rng: &mut Stream) -> f32 {
+        reading * (1.0 + self.noise * (2.0 * rng.random::<f32>() - 1.0))
+    }
+}
