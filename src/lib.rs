@@ -9,6 +9,7 @@
 
 #![deny(missing_docs)]
 
+pub mod cli;
 pub mod evolution;
 pub mod files;
 pub mod hierarchy;

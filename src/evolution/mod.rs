@@ -1,5 +1,17 @@
 //! Genetic programming of hierarchies (Thesis 3.2, Algorithm 3.1).
+
+mod breeding;
+mod crossover;
+mod evolve;
 mod experiment;
+mod individual;
+mod life;
 mod parallel;
+mod record;
+
+pub use crossover::crossover;
+pub use evolve::{Evolution, State};
 pub use experiment::{Experiment, ExperimentError, TreeError, read_tree};
+pub use individual::{Individual, Inherited, Origin, Parent};
 pub use parallel::Workers;
+pub use record::{GenerationRecord, RankedRecord, TrialRecord};

@@ -13,6 +13,19 @@ pub enum Glyphs {
 }
 
 impl Glyphs {
+    /// Unicode where the environment's locale is UTF-8, by the usual precedence of its
+    /// variables; else ASCII.
+    #[must_use]
+    pub fn of_locale() -> Self {
+        let set = |name| std::env::var(name).ok().filter(|value| !value.is_empty());
+        let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(set);
+        let locale = locale.unwrap_or_default().to_ascii_lowercase();
+        match locale.contains("utf-8") || locale.contains("utf8") {
+            true => Self::Unicode,
+            false => Self::Ascii,
+        }
+    }
+
     /// Branch to a child, branch to the last child, passing line.
     fn signs(self) -> [&'static str; 3] {
         match self {

@@ -1,3 +1,25 @@
-//! One run: evaluation, evolution thread, events, run folder, checkpoint, replay.
+//! One run: the evolution thread, its events and commands, the run folder,
+//! checkpoint and resume; and the evaluation of single structures.
+
+mod checkpoint;
+mod controls;
 mod evaluate;
+mod event;
+mod folder;
+mod log;
+mod manifest;
+mod outcome;
+mod recorder;
+mod run;
+mod worlds;
+
+pub use checkpoint::{Checkpoint, CheckpointError, LogPosition};
+pub use controls::{Activity, Controls};
 pub use evaluate::{Evaluation, Protocol, Repeat, evaluate};
+pub use event::{Ending, Event};
+pub use folder::{FolderError, Keep, RunFolder};
+pub use log::{LogError, read_events};
+pub use manifest::{Invocation, Manifest};
+pub use outcome::{BestIndividual, Outcome};
+pub use run::{Run, RunError, RunOptions, resume, start};
+pub use worlds::{SetupError, WorldTask, with_world};

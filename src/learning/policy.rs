@@ -23,14 +23,28 @@ pub type SelectionProbabilities = Vec<Option<Vec<f64>>>;
 
 impl<P: Copy + AsRef<[f32]>> PolicySamples<P> {
     /// Samples `count` states of each type; fewer where they are hard to find.
-    pub fn draw<W: World<Percept = P>>(world: &W, count: usize, rng: &mut Stream) -> Self {
-        let sample = |state_type| {
-            let draws = (0..count).map_while(|_| world.sample(state_type, &mut *rng));
-            draws.collect()
-        };
-        Self {
-            by_type: world.catalogue().types().map(sample).collect(),
+    ///
+    /// # Errors
+    /// When the gate is stopped.
+    pub fn draw<W: World<Percept = P>>(
+        world: &W,
+        count: usize,
+        rng: &mut Stream,
+        gate: &Gate,
+    ) -> Result<Self, Stopped> {
+        let mut by_type = Vec::new();
+        for state_type in world.catalogue().types() {
+            let mut percepts = Vec::with_capacity(count);
+            while percepts.len() < count {
+                gate.pass(0)?;
+                match world.sample(state_type, rng) {
+                    Some(percept) => percepts.push(percept),
+                    None => break,
+                }
+            }
+            by_type.push(percepts);
         }
+        Ok(Self { by_type })
     }
 
     /// The probabilities with which the policy of a hierarchy, followed from the root

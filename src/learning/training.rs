@@ -41,6 +41,7 @@ pub fn train<W: World>(
     let mut values = vec![0.0; actions];
     let mut steps = 0;
     while steps < training.steps {
+        let begun = steps;
         let Some(mut state) = world.begin_training(primitive, rng) else {
             return Ok(skill);
         };
@@ -59,15 +60,12 @@ pub fn train<W: World>(
             let error = reward - values[action];
             skill.learn(action, features, model.learning_rate as f32 * error);
             steps += 1;
-            if steps % Gate::STRIDE == 0 {
-                gate.pass(Gate::STRIDE)?;
-            }
             if !world.training_goes_on(primitive, &before, &mut state) {
                 break;
             }
         }
+        gate.pass(steps - begun)?;
         temperature = (temperature * training.temperature_decrease as f32).max(limit);
     }
-    gate.pass(steps % Gate::STRIDE)?;
     Ok(skill)
 }

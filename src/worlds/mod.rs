@@ -17,6 +17,17 @@ pub use catalogue::{
 use crate::random::Stream;
 use crate::scenario::TrainingModel;
 
+/// A typical input of a primitive subtask, for looking at what it has learned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe<P> {
+    /// The input in a few characters, for people.
+    pub label: String,
+    /// The readings with their names, which end in their units.
+    pub readings: Vec<(String, f64)>,
+    /// What the agent perceives.
+    pub percept: P,
+}
+
 /// A world: its subtasks, and the simulation of one agent in it.
 ///
 /// Implementations are immutable while a run lasts; everything that changes is in
@@ -58,6 +69,9 @@ pub trait World: Send + Sync {
     /// A random state of the given type, as the agent perceives it; `None` where
     /// none is found in reasonable time.
     fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<Self::Percept>;
+
+    /// Typical inputs of a primitive subtask.
+    fn probes(&self, primitive: SubtaskId) -> Vec<Probe<Self::Percept>>;
 
     /// How a primitive subtask is trained before evolution starts.
     fn training(&self, primitive: SubtaskId) -> &TrainingModel;

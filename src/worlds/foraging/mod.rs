@@ -37,6 +37,7 @@ use thiserror::Error;
 mod arena;
 mod catalogue;
 mod motion;
+mod probes;
 mod sensors;
 
 pub use arena::{Arena, Wall};
@@ -50,7 +51,7 @@ use arena::Reach;
 use motion::{Arc, slide};
 use sensors::{Sensors, Sighting};
 
-use super::{Catalogue, StateType, SubtaskId, World};
+use super::{Catalogue, Probe, StateType, SubtaskId, World};
 use crate::random::{Purpose, Stream, stream};
 use crate::scenario::{ForagingModel, MovementModel, TargetModel, TrainingModel};
 
@@ -277,6 +278,25 @@ impl ForagingWorld {
         }
     }
 
+    /// Readings scaled to [0, 1] over their ranges; 0 for a target that is not seen.
+    fn inputs(
+        &self,
+        proximity_mm: &[f32; PROXIMITY_SENSORS],
+        target: Option<TargetReading>,
+    ) -> [f32; INPUTS] {
+        let mut inputs = [0.0; INPUTS];
+        let [low, high] = self.sensors.proximity_range;
+        for (input, reading) in inputs.iter_mut().zip(proximity_mm) {
+            *input = (reading - low) / (high - low);
+        }
+        if let Some(target) = target {
+            let half = self.sensors.vision_half_angle_deg;
+            inputs[ANGLE] = (target.angle_deg + half) / (2.0 * half);
+            inputs[DISTANCE] = target.distance_mm / self.sensors.vision_range as f32;
+        }
+        inputs
+    }
+
     fn is_target_seeking(primitive: SubtaskId) -> bool {
         matches!(primitive, APPROACH_BATTERY | APPROACH_NEST | TURN)
     }
@@ -382,17 +402,7 @@ impl World for ForagingWorld {
     }
 
     fn percept(&self, state: &ForagingState) -> [f32; INPUTS] {
-        let mut inputs = [0.0; INPUTS];
-        let [low, high] = self.sensors.proximity_range;
-        for (input, reading) in inputs.iter_mut().zip(state.proximity_mm) {
-            *input = (reading - low) / (high - low);
-        }
-        if let Some(target) = state.target {
-            let half = self.sensors.vision_half_angle_deg;
-            inputs[ANGLE] = (target.angle_deg + half) / (2.0 * half);
-            inputs[DISTANCE] = target.distance_mm / self.sensors.vision_range as f32;
-        }
-        inputs
+        self.inputs(&state.proximity_mm, state.target)
     }
 
     fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<[f32; INPUTS]> {
@@ -404,6 +414,14 @@ impl World for ForagingWorld {
             let state = self.sensed(self.draw_start(rng), task, rng);
             (self.state_type(&state) == state_type).then(|| self.percept(&state))
         })
+    }
+
+    fn probes(&self, primitive: SubtaskId) -> Vec<Probe<[f32; INPUTS]>> {
+        if Self::is_target_seeking(primitive) {
+            self.angle_probes()
+        } else {
+            self.proximity_probes()
+        }
     }
 
     fn training(&self, primitive: SubtaskId) -> &TrainingModel {

@@ -1,0 +1,84 @@
+//! `maxq-lab check`: are scenario files valid?
+
+use std::process::ExitCode;
+
+use serde::Serialize;
+
+use super::output::{self, Done, Format};
+use crate::evolution::Experiment;
+use crate::lab::{WorldTask, with_world};
+use crate::scenario::Scenario;
+use crate::worlds::World;
+
+/// Check scenario files.
+///
+/// With --format json the complete scenarios are printed, defaults written out: what
+/// 'maxq-lab run --set' can change.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Scenario files, or names of embedded scenarios.
+    #[arg(required = true)]
+    files: Vec<String>,
+
+    /// How to report.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+#[derive(Serialize)]
+struct Report {
+    file: String,
+    valid: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scenario: Option<Scenario>,
+}
+
+/// Carries out the command.
+pub(super) fn main(args: &Args) -> Done {
+    let reports: Vec<_> = args.files.iter().map(|file| report(file)).collect();
+    match args.format {
+        Format::Json => output::json(&reports)?,
+        Format::Text => {
+            for report in &reports {
+                match &report.error {
+                    None => output::text(&format!("{}: valid\n", report.file))?,
+                    Some(error) => output::message(&format!("error: {error}")),
+                }
+            }
+        }
+    }
+    match reports.iter().all(|report| report.valid) {
+        true => Ok(ExitCode::SUCCESS),
+        false => Ok(ExitCode::FAILURE),
+    }
+}
+
+fn report(file: &str) -> Report {
+    let loaded = Scenario::load(file).map_err(|error| error.to_string());
+    let checked = loaded.and_then(|scenario| {
+        let ready = with_world(scenario.clone(), Ready);
+        ready
+            .map(|()| scenario)
+            .map_err(|error| format!("{file}: {error}"))
+    });
+    let (scenario, error) = match checked {
+        Ok(scenario) => (Some(scenario), None),
+        Err(error) => (None, Some(error)),
+    };
+    Report {
+        file: file.to_owned(),
+        valid: error.is_none(),
+        error,
+        scenario,
+    }
+}
+
+struct Ready;
+
+impl WorldTask for Ready {
+    type Output = ();
+
+    fn carry_out<W: World + 'static>(self, _experiment: Experiment<W>) {}
+}

@@ -1,0 +1,85 @@
+//! The command line, one file a command.
+//!
+//! Results go to standard output and stay pipeable; messages and progress go to
+//! standard error, progress only where that is a terminal.
+
+mod check;
+mod evaluate;
+mod manual;
+mod output;
+mod primitives;
+mod progress;
+mod resume;
+mod run;
+mod scenarios;
+mod schema;
+mod signals;
+mod source;
+mod tree;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use output::Failure;
+
+/// Evolve the task hierarchies of hierarchical reinforcement learning.
+///
+/// A population of MAXQ hierarchies competes inside one simulated robot. Each learns by
+/// MAXQ-Q while it forages - find a battery, capture it, bring it to the nest -, and
+/// typed crossover mixes the best (S. Elfwing, KTH 2003). The same scenario and seed give
+/// the same bits, whatever the machine, the number of threads, or how often the run was
+/// interrupted.
+#[derive(Debug, Parser)]
+#[command(name = "maxq-lab", version, max_term_width = 100, after_help = AFTER_HELP)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const AFTER_HELP: &str = "\
+Begin with:
+  maxq-lab scenarios                        what there is to run
+  maxq-lab run smoke                        the whole method in about a second
+  maxq-lab run environment-1                an experiment of the thesis
+  maxq-lab evaluate environment-1 --tree '(Root Wander ApproachBattery ApproachNest)'";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::Args),
+    Resume(resume::Args),
+    Evaluate(evaluate::Args),
+    #[command(subcommand)]
+    Tree(tree::Command),
+    Primitives(primitives::Args),
+    Check(check::Args),
+    Schema(schema::Args),
+    Scenarios(scenarios::Args),
+    Completions(manual::CompletionArgs),
+    Manual(manual::ManualArgs),
+}
+
+/// Runs the program with the process's arguments.
+#[must_use]
+pub fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Run(args) => run::main(args),
+        Command::Resume(args) => resume::main(&args),
+        Command::Evaluate(args) => evaluate::main(args),
+        Command::Tree(command) => tree::main(command),
+        Command::Primitives(args) => primitives::main(args),
+        Command::Check(args) => check::main(&args),
+        Command::Schema(args) => schema::main(&args),
+        Command::Scenarios(args) => scenarios::main(&args),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Manual(args) => manual::manual(&args),
+    };
+    match done {
+        Ok(code) => code,
+        Err(Failure::BrokenPipe) => ExitCode::SUCCESS,
+        Err(Failure::Message(message)) => {
+            output::message(&format!("error: {message}"));
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Text and JSON on standard output, messages on standard error.
+
+use std::fmt::Display;
+use std::io::{self, Write};
+
+use clap::ValueEnum;
+use serde::Serialize;
+
+/// Why a command did not do what it should.
+#[derive(Debug)]
+pub(super) enum Failure {
+    /// Whoever read our output has gone: nothing to say, nobody to say it to.
+    BrokenPipe,
+    /// Something to be said on standard error.
+    Message(String),
+}
+
+impl<E: Display> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Message(error.to_string())
+    }
+}
+
+/// What a command comes to.
+pub(super) type Done = Result<std::process::ExitCode, Failure>;
+
+/// How a command reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// For people.
+    #[default]
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// Writes text to standard output, its control characters made visible.
+pub(super) fn text(text: &str) -> Result<(), Failure> {
+    raw(visible(text).as_bytes())
+}
+
+/// Writes a value to standard output as JSON.
+pub(super) fn json(value: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value)?;
+    raw((ascii_controls(&text) + "\n").as_bytes())
+}
+
+/// Writes a message to standard error, its control characters made visible.
+pub(super) fn message(text: &str) {
+    // Nothing can be done about a standard error that cannot be written.
+    let _ = writeln!(io::stderr(), "{}", visible(text));
+}
+
+/// Writes bytes of this program's own making to standard output.
+pub(super) fn raw(bytes: &[u8]) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
+    written.map_err(|error| match error.kind() {
+        io::ErrorKind::BrokenPipe => Failure::BrokenPipe,
+        _ => Failure::Message(format!("standard output: {error}")),
+    })
+}
+
+/// Makes control characters visible: text from files must not steer a terminal.
+fn visible(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\n' => vec!['\n'],
+        c if c.is_control() => c.escape_unicode().collect(),
+        c => vec![c],
+    };
+    text.chars().flat_map(shown).collect()
+}
+
+/// JSON escapes the first 32 control characters; this escapes the others.
+fn ascii_controls(json: &str) -> String {
+    let escaped = |c: char| match c {
+        '\u{7f}'..='\u{9f}' => format!("\\u{:04x}", u32::from(c)).chars().collect(),
+        c => vec![c],
+    };
+    json.chars().flat_map(escaped).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_become_visible() {
+        assert_eq!(
+            visible("a\u{1b}[31mb\nc\u{9b}2J"),
+            "a\\u{1b}[31mb\nc\\u{9b}2J"
+        );
+        let json = ascii_controls(&serde_json::to_string("x\u{1b}\u{9b}").unwrap());
+        assert_eq!(json, "\"x\\u001b\\u009b\"");
+        assert_eq!(
+            serde_json::from_str::<String>(&json).unwrap(),
+            "x\u{1b}\u{9b}"
+        );
+    }
+}

@@ -1,0 +1,171 @@
+//! `maxq-lab primitives`: what the primitive subtasks have learned (Thesis Figure 4.3).
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::output::{self, Done, Failure, Format};
+use super::signals::Ended;
+use super::source::Source;
+use crate::evolution::{Experiment, Workers};
+use crate::lab::{WorldTask, with_world};
+use crate::learning::Gate;
+use crate::worlds::{Kind, World};
+
+/// Train the primitive subtasks and show what they have learned.
+///
+/// For typical inputs: the greedy action and the value of every action (Thesis Figure 4.3).
+/// Actions are numbered as in Thesis Table 4.4.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    #[command(flatten)]
+    source: Source,
+
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+
+    /// Computing threads; 0 means one for each processor.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+
+    /// How to report.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+#[derive(Serialize)]
+struct Report {
+    scenario: String,
+    seed: u64,
+    primitives: Vec<Primitive>,
+}
+
+#[derive(Serialize)]
+struct Primitive {
+    subtask: &'static str,
+    actions: Vec<String>,
+    rows: Vec<Row>,
+}
+
+/// One input and what the subtask does there.
+#[derive(Serialize)]
+struct Row {
+    #[serde(skip)]
+    label: String,
+    input: BTreeMap<String, f64>,
+    /// Numbered from 1.
+    greedy_action: usize,
+    q: Vec<f32>,
+}
+
+/// Carries out the command.
+pub(super) fn main(args: Args) -> Done {
+    let scenario = args.source.load()?;
+    let gate = Arc::new(Gate::default());
+    let stopping = Arc::clone(&gate);
+    let ended = Ended::on_signal(move || stopping.stop())?;
+    let format = args.format;
+    let report = with_world(scenario, Task { args, gate })?;
+    if let Some(code) = ended.exit_code() {
+        return Ok(ExitCode::from(code));
+    }
+    let report = report?;
+    match format {
+        Format::Json => output::json(&report)?,
+        Format::Text => output::text(&describe(&report))?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+struct Task {
+    args: Args,
+    gate: Arc<Gate>,
+}
+
+impl WorldTask for Task {
+    type Output = Result<Report, Failure>;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        let workers = Workers::new(self.args.threads)?;
+        let skills = experiment.train(self.args.seed, 0, &workers, &self.gate)?;
+        let catalogue = experiment.catalogue();
+        let primitives = skills.all().iter().map(|skill| {
+            let rows = experiment
+                .world
+                .probes(skill.subtask)
+                .into_iter()
+                .map(|probe| {
+                    let q = skill.action_values(&experiment.encoder, probe.percept.as_ref());
+                    Row {
+                        label: probe.label,
+                        input: probe.readings.into_iter().collect(),
+                        greedy_action: greedy(&q) + 1,
+                        q,
+                    }
+                });
+            let subtask = catalogue.subtask(skill.subtask);
+            Primitive {
+                subtask: subtask.name,
+                actions: match &subtask.kind {
+                    Kind::Primitive { actions } => actions.clone(),
+                    Kind::Composite { .. } => Vec::new(),
+                },
+                rows: rows.collect(),
+            }
+        });
+        Ok(Report {
+            scenario: experiment.scenario.name.clone(),
+            seed: self.args.seed,
+            primitives: primitives.collect(),
+        })
+    }
+}
+
+fn greedy(values: &[f32]) -> usize {
+    let mut best = 0;
+    for (index, value) in values.iter().enumerate() {
+        if *value > values[best] {
+            best = index;
+        }
+    }
+    best
+}
+
+fn describe(report: &Report) -> String {
+    let mut text = format!("{}, seed {}\n", report.scenario, report.seed);
+    for primitive in &report.primitives {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n{}", primitive.subtask);
+        let width = primitive
+            .rows
+            .iter()
+            .map(|row| row.label.len())
+            .max()
+            .unwrap_or(0);
+        let columns = primitive.actions.iter().enumerate();
+        let columns = columns.map(|(i, action)| format!("{:>14}", format!("{} {action}", i + 1)));
+        let _ = writeln!(
+            text,
+            "  {:width$}  greedy{}",
+            "",
+            columns.collect::<String>()
+        );
+        for row in &primitive.rows {
+            let values = row
+                .q
+                .iter()
+                .map(|q| format!("{q:>14.3}"))
+                .collect::<String>();
+            let _ = writeln!(
+                text,
+                "  {:width$}  {:>6}{values}",
+                row.label, row.greedy_action
+            );
+        }
+    }
+    text
+}

@@ -1,0 +1,63 @@
+//! The progress of a run on a terminal.
+
+use std::io::{IsTerminal, stderr};
+use std::time::Duration;
+
+use crossbeam_channel::Receiver;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::evolution::GenerationRecord;
+use crate::lab::Event;
+
+/// Follows a run to its end; draws a bar where standard error is a terminal and
+/// `shown` says so.
+pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize, shown: bool) {
+    let bar = bar(limit * population as u64, shown);
+    let mut message = String::from("training the primitive subtasks");
+    for event in events {
+        match event {
+            Event::Generation(record) => {
+                message = describe(&record);
+                bar.set_position(record.generation * population as u64);
+            }
+            Event::Progress {
+                generation,
+                lived,
+                population,
+                ..
+            } if generation > 0 => {
+                bar.set_position((generation - 1) * population as u64 + lived as u64);
+            }
+            Event::Ended { generations, .. } => bar.set_length(generations * population as u64),
+            _ => {}
+        }
+        bar.set_message(message.clone());
+    }
+    bar.finish_and_clear();
+}
+
+fn bar(length: u64, shown: bool) -> ProgressBar {
+    let target = match shown && stderr().is_terminal() {
+        true => ProgressDrawTarget::stderr_with_hz(5),
+        false => ProgressDrawTarget::hidden(),
+    };
+    let bar = ProgressBar::with_draw_target(Some(length), target);
+    let template = "{bar:20} {elapsed} (at most {eta} left)  {wide_msg}";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(500));
+    bar
+}
+
+fn describe(record: &GenerationRecord) -> String {
+    let middle = record.individuals.len() / 2;
+    let mean = |rank| record.mean_trial_steps(rank).unwrap_or(f64::NAN);
+    format!(
+        "generation {}: best {:.0}, rank {middle} {:.0} steps a trial, difference {:.1}",
+        record.generation,
+        mean(1),
+        mean(middle),
+        record.mean_difference
+    )
+}

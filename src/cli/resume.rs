@@ -1,0 +1,30 @@
+//! `maxq-lab resume`: go on with a run.
+
+use std::path::PathBuf;
+
+use super::output::Done;
+use super::run::{How, follow};
+use crate::lab::resume;
+
+/// Go on with a run that was stopped, or died.
+///
+/// The result is the same, bit for bit, as if the run had never been interrupted. With
+/// --generations a run that ended at its limit goes on to another limit.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// The run folder.
+    run_dir: PathBuf,
+
+    /// Another generation limit.
+    #[arg(long, value_name = "N")]
+    generations: Option<u64>,
+
+    #[command(flatten)]
+    how: How,
+}
+
+/// Carries out the command.
+pub(super) fn main(args: &Args) -> Done {
+    let run = resume(&args.run_dir, args.generations, &args.how.options(false))?;
+    follow(run, &args.how)
+}

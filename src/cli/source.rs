@@ -1,0 +1,28 @@
+//! Arguments that several commands share.
+
+use clap::Args;
+
+use super::output::Failure;
+use crate::scenario::Scenario;
+
+/// A scenario with changes.
+#[derive(Clone, Debug, Args)]
+pub(super) struct Source {
+    /// A scenario file, or the name of an embedded scenario ('maxq-lab scenarios').
+    scenario: String,
+
+    /// Change a setting of the scenario; may be repeated.
+    ///
+    /// The key is a dotted path into the complete scenario, as 'maxq-lab check --format json
+    /// SCENARIO' prints it, the value JSON or a bare word: learning.discount=0.95,
+    /// evolution.selection=random.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
+}
+
+impl Source {
+    /// The scenario with its changes.
+    pub(super) fn load(&self) -> Result<Scenario, Failure> {
+        Ok(Scenario::load(&self.scenario)?.with_settings(&self.settings)?)
+    }
+}

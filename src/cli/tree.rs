@@ -1,0 +1,156 @@
+//! `maxq-lab tree`: look at hierarchies.
+
+use std::process::ExitCode;
+
+use clap::{Args, Subcommand};
+use serde::Serialize;
+use serde_json::json;
+
+use super::output::{self, Done, Failure, Format};
+use crate::evolution::{Experiment, read_tree};
+use crate::hierarchy::{Glyphs, Summary, Tree, draw, structural_difference, to_dot, to_text};
+use crate::lab::{WorldTask, with_world};
+use crate::scenario::Scenario;
+use crate::worlds::{Catalogue, World};
+
+/// Look at hierarchies: draw, check, compare, export.
+///
+/// A hierarchy is text: '(Root (Capture (FindBattery Wander) ApproachBattery) Wander
+/// ApproachNest)'. Its subtasks and rules are those of the scenario.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Draw a hierarchy and count what it is made of.
+    Show(One),
+    /// Check a hierarchy against the typing rules.
+    Check(One),
+    /// Measure the structural difference of two hierarchies (Thesis 4.5.2).
+    Diff {
+        /// The one hierarchy.
+        a: String,
+        /// The other hierarchy.
+        b: String,
+        #[command(flatten)]
+        how: How,
+    },
+    /// Write a hierarchy as Graphviz DOT.
+    Dot {
+        /// The hierarchy.
+        tree: String,
+        /// The scenario whose subtasks and rules apply.
+        #[arg(long, default_value = "environment-1")]
+        scenario: String,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(super) struct One {
+    /// The hierarchy.
+    tree: String,
+    #[command(flatten)]
+    how: How,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct How {
+    /// The scenario whose subtasks and rules apply.
+    #[arg(long, default_value = "environment-1")]
+    scenario: String,
+    /// How to report.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Carries out the command.
+pub(super) fn main(command: Command) -> Done {
+    match command {
+        Command::Show(One { tree, how }) => show(&tree, &how)?,
+        Command::Check(One { tree, how }) => check(&tree, &how)?,
+        Command::Diff { a, b, how } => difference(&a, &b, &how)?,
+        Command::Dot { tree, scenario } => {
+            let scenario = Scenario::load(&scenario)?;
+            output::text(&with_tree(&scenario, &tree, to_dot)?)?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn show(text: &str, how: &How) -> Result<(), Failure> {
+    let scenario = Scenario::load(&how.scenario)?;
+    let (summary, drawing) = with_tree(&scenario, text, |tree, catalogue| {
+        (
+            Summary::of(tree, catalogue),
+            draw(tree, catalogue, Glyphs::of_locale()),
+        )
+    })?;
+    if how.format == Format::Json {
+        return output::json(&summary);
+    }
+    let by_type = summary.primitives_by_state_type.iter().enumerate();
+    let by_type: Vec<_> = by_type
+        .map(|(index, names)| format!("state type {}: {}", index + 1, names.join(", ")))
+        .collect();
+    output::text(&format!(
+        "{}\n\ndepth {}, {} composite and {} primitive subtasks\n{}\n",
+        drawing.join("\n"),
+        summary.depth,
+        summary.composites,
+        summary.primitives.len(),
+        by_type.join("\n")
+    ))
+}
+
+fn check(text: &str, how: &How) -> Result<(), Failure> {
+    let scenario = Scenario::load(&how.scenario)?;
+    let tree = with_tree(&scenario, text, to_text)?;
+    match how.format {
+        Format::Json => output::json(&json!({ "valid": true, "tree": tree })),
+        Format::Text => output::text(&format!("valid: {tree}\n")),
+    }
+}
+
+#[derive(Serialize)]
+struct Difference {
+    a: String,
+    b: String,
+    difference: i64,
+}
+
+fn difference(a: &str, b: &str, how: &How) -> Result<(), Failure> {
+    let scenario = Scenario::load(&how.scenario)?;
+    let first = with_tree(&scenario, a, |tree, _| tree.clone())?;
+    let report = with_tree(&scenario, b, |second, catalogue| Difference {
+        a: to_text(&first, catalogue),
+        b: to_text(second, catalogue),
+        difference: structural_difference(&first, second, catalogue),
+    })?;
+    match how.format {
+        Format::Json => output::json(&report),
+        Format::Text => output::text(&format!("{}\n", report.difference)),
+    }
+}
+
+/// Reads a hierarchy by the rules of a scenario and does something with it.
+pub(super) fn with_tree<T>(
+    scenario: &Scenario,
+    text: &str,
+    what: impl FnOnce(&Tree, &Catalogue) -> T,
+) -> Result<T, Failure> {
+    let task = TreeTask { text, what };
+    with_world(scenario.clone(), task)?
+}
+
+struct TreeTask<'t, F> {
+    text: &'t str,
+    what: F,
+}
+
+impl<T, F: FnOnce(&Tree, &Catalogue) -> T> WorldTask for TreeTask<'_, F> {
+    type Output = Result<T, Failure>;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        let depth = experiment.scenario.evolution.maximum_depth;
+        let tree = read_tree(self.text, experiment.catalogue(), depth)
+            .map_err(|error| format!("{:?}: {error}", self.text))?;
+        Ok((self.what)(&tree, experiment.catalogue()))
+    }
+}

@@ -1,0 +1,81 @@
+//! The next generation: reproduction, death, tournaments, crossover.
+
+use rand::RngExt;
+
+use super::crossover::crossover;
+use super::individual::{Individual, Origin};
+use crate::learning::{Gate, Stopped};
+use crate::random::Stream;
+use crate::scenario::Scenario;
+use crate::worlds::Catalogue;
+
+/// Pairs of parents drawn before two places are filled by copies instead.
+const MAX_PARENT_DRAWS: usize = 20;
+
+/// The population after `ranked`, which is sorted from best to worst.
+///
+/// The best are reproduced, as many of the worst die, and the places left are filled
+/// by crossover of parents that win tournaments among the survivors. `next_id` is the
+/// id of the next new individual, and moves on.
+///
+/// # Errors
+/// When the gate is stopped.
+pub(super) fn breed(
+    ranked: &[Individual],
+    next_id: &mut u64,
+    scenario: &Scenario,
+    catalogue: &Catalogue,
+    rng: &mut Stream,
+    gate: &Gate,
+) -> Result<Vec<Individual>, Stopped> {
+    let evolution = &scenario.evolution;
+    let reproduced = ranked[..evolution.reproduced]
+        .iter()
+        .map(|best| Individual {
+            origin: Origin::Reproduced,
+            ..best.clone()
+        });
+    let mut population: Vec<_> = reproduced.collect();
+    let survivors = &ranked[..ranked.len() - evolution.reproduced];
+    while population.len() < ranked.len() {
+        gate.pass(0)?;
+        let ids = [*next_id, *next_id + 1];
+        *next_id += 2;
+        let mut last = [0, 0];
+        let crossed = (0..MAX_PARENT_DRAWS).find_map(|_| {
+            last = parents(survivors.len(), evolution.tournament_size, rng);
+            let [a, b] = last.map(|rank| &survivors[rank]);
+            crossover(a, b, ids, scenario, catalogue, rng)
+        });
+        let copies = || [0, 1].map(|i| copy(&survivors[last[i]], ids[i]));
+        population.extend(crossed.unwrap_or_else(copies));
+    }
+    population.truncate(ranked.len());
+    Ok(population)
+}
+
+/// The ranks of two different parents, each the winner of a tournament.
+fn parents(survivors: usize, tournament_size: usize, rng: &mut Stream) -> [usize; 2] {
+    let all: Vec<_> = (0..survivors).collect();
+    let first = tournament(&all, tournament_size, rng);
+    let others: Vec<_> = all.into_iter().filter(|&rank| rank != first).collect();
+    [first, tournament(&others, tournament_size, rng)]
+}
+
+/// The best of `size` different candidates (Thesis 2.3.1).
+fn tournament(candidates: &[usize], size: usize, rng: &mut Stream) -> usize {
+    let mut left = candidates.to_vec();
+    let drawn = (0..size.min(candidates.len())).map(|_| {
+        let index = rng.random_range(0..left.len());
+        left.swap_remove(index)
+    });
+    drawn.min().unwrap_or(0)
+}
+
+fn copy(from: &Individual, id: u64) -> Individual {
+    Individual {
+        id,
+        origin: Origin::Copied { from: from.id },
+        hierarchy: from.hierarchy.clone(),
+    }
+}

@@ -1,0 +1,122 @@
+//! Typed crossover with Lamarckian inheritance (Thesis 3.2).
+
+use rand::RngExt;
+
+use super::individual::{Individual, Inherited, Origin, Parent};
+use crate::hierarchy::check;
+use crate::learning::{CompositeValues, Hierarchy};
+use crate::random::Stream;
+use crate::scenario::{Inheritance, LearningModel, Scenario};
+use crate::worlds::Catalogue;
+
+/// Pairs of crossover sites drawn before two parents count as incompatible. Trees
+/// have some ten nodes, so parents that fail here have hardly a valid pair.
+const MAX_SITE_DRAWS: usize = 200;
+
+/// Crosses two parents at sites drawn uniformly among their non-root nodes, drawn
+/// again until both offspring obey the typing rules; `None` when no draw did.
+///
+/// The first offspring is `a` with a subtree of `b`, the second the reverse; their
+/// ids are `ids[0]` and `ids[1]`.
+#[must_use]
+pub fn crossover(
+    a: &Individual,
+    b: &Individual,
+    ids: [u64; 2],
+    scenario: &Scenario,
+    catalogue: &Catalogue,
+    rng: &mut Stream,
+) -> Option<[Individual; 2]> {
+    let depth = scenario.evolution.maximum_depth;
+    let (tree_a, tree_b) = (a.hierarchy.tree(), b.hierarchy.tree());
+    let (nodes_a, nodes_b) = (tree_a.nodes().len(), tree_b.nodes().len());
+    (0..MAX_SITE_DRAWS).find_map(|_| {
+        let (site_a, site_b) = (rng.random_range(1..nodes_a), rng.random_range(1..nodes_b));
+        let valid = |tree| check(&tree, catalogue, depth).is_ok();
+        let both = valid(tree_a.grafted(site_a, tree_b, site_b))
+            && valid(tree_b.grafted(site_b, tree_a, site_a));
+        both.then(|| {
+            [
+                offspring((a, site_a), (b, site_b), ids[0], scenario, catalogue),
+                offspring((b, site_b), (a, site_a), ids[1], scenario, catalogue),
+            ]
+        })
+    })
+}
+
+/// The receiver with the subtree at its site replaced by the donor's.
+///
+/// All composites keep what their parent had learned, except those on the path from
+/// the parent of the new subtree to the root, which start anew. Under Darwinian
+/// inheritance all start anew.
+fn offspring(
+    (receiver, site): (&Individual, usize),
+    (donor, donor_site): (&Individual, usize),
+    id: u64,
+    scenario: &Scenario,
+    catalogue: &Catalogue,
+) -> Individual {
+    let (old, given) = (receiver.hierarchy.tree(), donor.hierarchy.tree());
+    let tree = old.grafted(site, given, donor_site);
+    let graft = site..site + given.subtree(donor_site).len();
+    let darwinian = scenario.evolution.inheritance == Inheritance::Darwinian;
+    let path: Vec<usize> = tree.ancestors(site).collect();
+
+    let mut values = receiver.hierarchy.values().to_vec();
+    let donated = donor.hierarchy.values()[given.subtree(donor_site)].to_vec();
+    values.splice(old.subtree(site), donated);
+
+    let (mut inherited, mut reset) = (Vec::new(), Vec::new());
+    for (node, value) in values.iter_mut().enumerate() {
+        let Some(value) = value else { continue };
+        let subtask = tree.subtask(node);
+        let name = subtask.name(catalogue).to_owned();
+        if darwinian || path.contains(&node) {
+            let children = tree.children(node).count();
+            *value = initial(&scenario.learning, subtask, children, catalogue);
+            reset.push(name);
+        } else {
+            let from = if graft.contains(&node) {
+                donor.id
+            } else {
+                receiver.id
+            };
+            inherited.push(Inherited {
+                subtask: name,
+                from,
+            });
+        }
+    }
+    let parent = |individual: &Individual, site: usize| Parent {
+        id: individual.id,
+        site,
+        subtask: individual
+            .hierarchy
+            .tree()
+            .subtask(site)
+            .name(catalogue)
+            .to_owned(),
+    };
+    let hierarchy = Hierarchy::from_parts(tree, values);
+    Individual {
+        id,
+        origin: Origin::Crossover {
+            receiver: parent(receiver, site),
+            donor: parent(donor, donor_site),
+            inherited,
+            reset,
+        },
+        hierarchy: hierarchy.unwrap_or_else(|| unreachable!("values were spliced as the tree was")),
+    }
+}
+
+fn initial(
+    learning: &LearningModel,
+    subtask: crate::worlds::SubtaskId,
+    children: usize,
+    catalogue: &Catalogue,
+) -> CompositeValues {
+    let temperature = learning.initial_temperature as f32;
+    let parameter = learning.initial_parameter as f32;
+    CompositeValues::new(subtask, children, catalogue, temperature, parameter)
+}

@@ -1,0 +1,313 @@
+//! The evolutionary scheme (Thesis Algorithm 3.1).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rand::RngExt;
+
+use super::breeding::breed;
+use super::experiment::Experiment;
+use super::individual::{Individual, Origin};
+use super::life::{Life, Starts, is_experienced, live};
+use super::parallel::Workers;
+use super::record::{GenerationRecord, RankedRecord};
+use crate::hierarchy::{Summary, canonical, structural_difference};
+use crate::learning::{Gate, PolicySamples, SelectionProbabilities, Skills, Stopped, average};
+use crate::random::{Purpose, stream};
+use crate::scenario::{PrimitiveLearning, Selection};
+use crate::worlds::World;
+
+/// All that an evolution has come to: with the scenario and the seed, everything
+/// needed to go on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Generations lived through; 0 before the initial population has lived.
+    pub generation: u64,
+    /// After a generation from best to worst; before the first in the scenario's order.
+    pub individuals: Vec<Individual>,
+    /// The one copy of the primitive subtasks.
+    pub skills: Skills,
+    /// Id of the next new individual.
+    pub next_id: u64,
+    /// Control steps so far, training of the primitive subtasks included.
+    pub control_steps: u64,
+    /// Whether the better half has one structure.
+    pub converged: bool,
+}
+
+/// An evolution under way.
+#[derive(Debug)]
+pub struct Evolution<'e, W: World> {
+    experiment: &'e Experiment<W>,
+    workers: &'e Workers,
+    seed: u64,
+    samples: PolicySamples<W::Percept>,
+    state: Arc<State>,
+}
+
+impl<'e, W: World> Evolution<'e, W> {
+    /// Line 1: the hand-coded initial population, with freshly trained primitive subtasks.
+    ///
+    /// # Errors
+    /// When the gate is stopped.
+    pub fn begin(
+        experiment: &'e Experiment<W>,
+        workers: &'e Workers,
+        seed: u64,
+        gate: &Gate,
+    ) -> Result<Self, Stopped> {
+        let skills = experiment.train(seed, 0, workers, gate)?;
+        let trees = experiment.initial_population.iter().zip(0..);
+        let individuals = trees.map(|(tree, id)| Individual {
+            id,
+            origin: Origin::HandCoded,
+            hierarchy: experiment.newborn(tree.clone()),
+        });
+        let individuals: Vec<_> = individuals.collect();
+        let primitives = experiment.catalogue().primitives();
+        let state = State {
+            generation: 0,
+            next_id: individuals.len() as u64,
+            individuals,
+            skills,
+            control_steps: primitives
+                .map(|primitive| u64::from(experiment.world.training(primitive).steps))
+                .sum(),
+            converged: false,
+        };
+        Self::resume(experiment, workers, seed, state, gate)
+    }
+
+    /// Goes on from a state.
+    ///
+    /// # Errors
+    /// When the gate is stopped.
+    pub fn resume(
+        experiment: &'e Experiment<W>,
+        workers: &'e Workers,
+        seed: u64,
+        state: State,
+        gate: &Gate,
+    ) -> Result<Self, Stopped> {
+        let mut rng = stream(seed, 0, 0, Purpose::PolicySamples);
+        let count = experiment.scenario.evolution.policy_samples;
+        Ok(Self {
+            samples: PolicySamples::draw(&experiment.world, count, &mut rng, gate)?,
+            experiment,
+            workers,
+            seed,
+            state: Arc::new(state),
+        })
+    }
+
+    /// What the evolution has come to; a snapshot costs nothing.
+    #[must_use]
+    pub fn state(&self) -> &Arc<State> {
+        &self.state
+    }
+
+    /// Whether evolution is over: converged, or at the generation limit.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        let limit = self.experiment.scenario.evolution.generation_limit;
+        self.state.converged || self.state.generation >= limit
+    }
+
+    /// One turn of the loop: lines 8 and 9 but before the first generation, then lines
+    /// 3 to 5. `progress` is told how many individuals have lived.
+    ///
+    /// # Errors
+    /// When the gate is stopped; then nothing has changed.
+    pub fn step(
+        &mut self,
+        gate: &Gate,
+        progress: impl Fn(usize) + Sync,
+    ) -> Result<GenerationRecord, Stopped> {
+        let experiment = self.experiment;
+        let generation = self.state.generation + 1;
+        let mut next_id = self.state.next_id;
+        let population = if self.state.generation == 0 {
+            self.state.individuals.clone()
+        } else {
+            let mut rng = stream(self.seed, self.state.generation, 0, Purpose::Breeding);
+            let ranked = &self.state.individuals;
+            breed(
+                ranked,
+                &mut next_id,
+                &experiment.scenario,
+                experiment.catalogue(),
+                &mut rng,
+                gate,
+            )?
+        };
+        let (lives, skills) = self.live_all(&population, generation, gate, progress)?;
+        let ranks = self.ranks(&lives, generation);
+        let lived_steps: u64 = lives.iter().map(|life| life.control_steps).sum();
+        let mut pairs: Vec<_> = population.into_iter().zip(lives).map(Some).collect();
+        let ranked: Vec<_> = ranks
+            .iter()
+            .filter_map(|&index| pairs[index].take())
+            .collect();
+        let control_steps = self.state.control_steps + lived_steps;
+        let record = self.record(generation, &ranked, &skills, control_steps, gate)?;
+        self.state = Arc::new(State {
+            generation,
+            individuals: ranked
+                .into_iter()
+                .map(|(individual, life)| Individual {
+                    hierarchy: life.hierarchy,
+                    ..individual
+                })
+                .collect(),
+            skills,
+            next_id,
+            control_steps,
+            converged: record.converged,
+        });
+        Ok(record)
+    }
+
+    /// Line 3: all individuals live through the generation.
+    fn live_all(
+        &self,
+        population: &[Individual],
+        generation: u64,
+        gate: &Gate,
+        progress: impl Fn(usize) + Sync,
+    ) -> Result<(Vec<Life>, Skills), Stopped> {
+        let starts = Starts::draw(self.experiment, self.seed, generation);
+        let lived = AtomicUsize::new(0);
+        let one = |index: usize, skills: Skills| {
+            let individual = &population[index];
+            let life = live(
+                self.experiment,
+                individual,
+                skills,
+                &starts,
+                self.seed,
+                generation,
+                gate,
+            )?;
+            progress(lived.fetch_add(1, Ordering::Relaxed) + 1);
+            Ok(life)
+        };
+        if self.experiment.scenario.learning.primitive_learning == PrimitiveLearning::Shared {
+            let mut skills = self.state.skills.clone();
+            let mut lives = Vec::with_capacity(population.len());
+            for index in 0..population.len() {
+                let life = one(index, skills)?;
+                skills = life.skills.clone();
+                lives.push(life);
+            }
+            return Ok((lives, skills));
+        }
+        // Half as many trials take half as long: start these last.
+        let mut order: Vec<_> = (0..population.len()).collect();
+        order.sort_by_key(|&index| is_experienced(&population[index]));
+        let lives = self
+            .workers
+            .map(order, |index| one(index, self.state.skills.clone()))?;
+        Ok((lives, self.state.skills.clone()))
+    }
+
+    /// Line 4: indices from best to worst; of equals, the one made first is better.
+    fn ranks(&self, lives: &[Life], generation: u64) -> Vec<usize> {
+        let mut order: Vec<_> = (0..lives.len()).collect();
+        match self.experiment.scenario.evolution.selection {
+            Selection::Fitness => order.sort_by_key(|&index| lives[index].fitness()),
+            Selection::Random => {
+                let mut rng = stream(self.seed, generation, 0, Purpose::RandomRank);
+                let chances: Vec<u64> = order.iter().map(|_| rng.random()).collect();
+                order.sort_by_key(|&index| chances[index]);
+            }
+        }
+        order
+    }
+
+    fn record(
+        &self,
+        generation: u64,
+        ranked: &[(Individual, Life)],
+        skills: &Skills,
+        control_steps: u64,
+        gate: &Gate,
+    ) -> Result<GenerationRecord, Stopped> {
+        let catalogue = self.experiment.catalogue();
+        let better = &ranked[..ranked.len() / 2];
+        let best = ranked[0].1.hierarchy.tree();
+        let individuals: Vec<_> = ranked
+            .iter()
+            .enumerate()
+            .map(|(index, (individual, life))| {
+                let tree = life.hierarchy.tree();
+                let summary = Summary::of(tree, catalogue);
+                RankedRecord {
+                    rank: index + 1,
+                    id: individual.id,
+                    origin: individual.origin.clone(),
+                    tree: summary.tree,
+                    composites: summary.composites,
+                    primitives: owned(&summary.primitives),
+                    primitives_by_state_type: summary
+                        .primitives_by_state_type
+                        .iter()
+                        .map(|names| owned(names))
+                        .collect(),
+                    fitness_steps: life.fitness(),
+                    trials: life.scored.clone(),
+                    difference_to_best: structural_difference(tree, best, catalogue),
+                }
+            })
+            .collect();
+        let others = &individuals[1..better.len()];
+        let difference: i64 = others.iter().map(|other| other.difference_to_best).sum();
+        let structure = |(_, life): &(_, Life)| canonical(life.hierarchy.tree(), catalogue);
+        let first = structure(&ranked[0]);
+        Ok(GenerationRecord {
+            generation,
+            mean_difference: difference as f64 / others.len().max(1) as f64,
+            selection_probabilities: self.named(self.probabilities(better, skills, gate)?),
+            converged: better.iter().all(|other| structure(other) == first),
+            control_steps,
+            individuals,
+        })
+    }
+
+    fn probabilities(
+        &self,
+        better: &[(Individual, Life)],
+        skills: &Skills,
+        gate: &Gate,
+    ) -> Result<SelectionProbabilities, Stopped> {
+        let Experiment {
+            scenario,
+            world,
+            encoder,
+            ..
+        } = self.experiment;
+        let all = self.workers.map((0..better.len()).collect(), |index| {
+            let hierarchy = &better[index].1.hierarchy;
+            self.samples
+                .probabilities(world, encoder, &scenario.learning, hierarchy, skills, gate)
+        })?;
+        Ok(average(&all))
+    }
+
+    fn named(&self, probabilities: SelectionProbabilities) -> Vec<Option<BTreeMap<String, f64>>> {
+        let catalogue = self.experiment.catalogue();
+        let names = || {
+            catalogue
+                .primitives()
+                .map(|primitive| primitive.name(catalogue).to_owned())
+        };
+        let by_type = probabilities.into_iter();
+        by_type
+            .map(|row| row.map(|row| names().zip(row).collect()))
+            .collect()
+    }
+}
+
+fn owned(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&name| name.to_owned()).collect()
+}

@@ -1,0 +1,65 @@
+//! Individuals and where they come from.
+
+use serde::{Deserialize, Serialize};
+
+use crate::learning::Hierarchy;
+
+/// A member of the population.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Individual {
+    /// Unique in a run, in the order of making. A reproduced individual keeps its id.
+    pub id: u64,
+    /// How it came into its generation.
+    pub origin: Origin,
+    /// Its structure and what it has learned.
+    pub hierarchy: Hierarchy,
+}
+
+/// How an individual came into its generation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Origin {
+    /// From the scenario's initial population.
+    HandCoded,
+    /// Among the best of the generation before; it lives on.
+    Reproduced,
+    /// By crossover: the receiver with one subtree replaced by the donor's.
+    Crossover {
+        /// The parent that gave the tree from the root down.
+        receiver: Parent,
+        /// The parent that gave the new subtree.
+        donor: Parent,
+        /// Composite subtasks whose learned values were inherited.
+        inherited: Vec<Inherited>,
+        /// Composite subtasks that were set back to initial values.
+        reset: Vec<String>,
+    },
+    /// A copy with learned values of a parent, made where no crossover of any parents
+    /// drawn obeyed the rules.
+    Copied {
+        /// The individual copied.
+        from: u64,
+    },
+}
+
+/// A parent and its crossover site.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parent {
+    /// Id of the individual.
+    pub id: u64,
+    /// Its crossover site: the index of the node in preorder, the root being 0.
+    pub site: usize,
+    /// The subtask there.
+    pub subtask: String,
+}
+
+/// A composite subtask whose learned values were inherited.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Inherited {
+    /// The subtask.
+    pub subtask: String,
+    /// Id of the parent that it was inherited from.
+    pub from: u64,
+}

@@ -1,0 +1,310 @@
+//! The run folder: what lies in it, who may write it, how it comes to be.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use super::manifest::{MANIFEST_FORMAT, Manifest};
+use crate::files::{ReadError, read_text, sync_folder, write_atomically};
+use crate::scenario::MAX_FILE_BYTES;
+
+/// Why a run folder cannot be used.
+#[derive(Debug, Error)]
+pub enum FolderError {
+    /// There is something at the place of a new run folder.
+    #[error(
+        "{path}: exists already; allowed: another --out, --force to replace a run, or 'maxq-lab \
+         resume {path}' to go on with it"
+    )]
+    Exists {
+        /// The place.
+        path: String,
+    },
+    /// `--force` would delete something that is no run.
+    #[error(
+        "{path}: holds no run.json, so it is not a run folder; --force replaces run folders only"
+    )]
+    NotReplaceable {
+        /// The place.
+        path: String,
+    },
+    /// It is not a run folder.
+    #[error("{path}: holds no run.json; allowed: a run folder")]
+    NotARun {
+        /// The folder.
+        path: String,
+    },
+    /// Another process works on the run.
+    #[error("{path}: another process works on this run; wait for it, or stop it")]
+    InUse {
+        /// The folder.
+        path: String,
+    },
+    /// The operating system refused.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file or folder.
+        path: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// `run.json` cannot be read.
+    #[error("{path}: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// Why.
+        source: ReadError,
+    },
+    /// `run.json` is not what it should be.
+    #[error("{path}: {message}")]
+    Manifest {
+        /// The file.
+        path: String,
+        /// What is wrong, and where.
+        message: String,
+    },
+}
+
+/// Which generations' checkpoints are kept for time travel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Keep {
+    /// Every generation's.
+    #[default]
+    All,
+    /// Every n-th generation's.
+    Every(u64),
+    /// None but the latest, `checkpoint.json`.
+    None,
+}
+
+impl Keep {
+    /// Whether the checkpoint of a generation is kept.
+    #[must_use]
+    pub fn keeps(self, generation: u64) -> bool {
+        match self {
+            Self::All => true,
+            Self::Every(n) => generation.is_multiple_of(n),
+            Self::None => false,
+        }
+    }
+}
+
+impl FromStr for Keep {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match (text, text.parse()) {
+            ("all", _) => Ok(Self::All),
+            ("none", _) => Ok(Self::None),
+            (_, Ok(n)) if n > 0 => Ok(Self::Every(n)),
+            _ => Err(format!(
+                "found {text:?}; allowed: all, none, or a number n for every n-th"
+            )),
+        }
+    }
+}
+
+/// A run folder that this process may write: it holds the folder's lock.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+    _lock: File,
+}
+
+impl RunFolder {
+    /// Makes a new run folder. It appears with its `run.json` and lock in one step, so
+    /// that whatever is found later is a whole run folder.
+    ///
+    /// # Errors
+    /// When something is there already - with `force`, something that is no run folder
+    /// or that another process works on -, or the operating system refuses.
+    pub fn create(path: &Path, manifest: &Manifest, force: bool) -> Result<Self, FolderError> {
+        let parent = match path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        fs::create_dir_all(parent).map_err(|error| io_error(parent, error))?;
+        let replaced = Self::make_room(path, force)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".new-run-");
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+        let fresh = builder
+            .tempdir_in(parent)
+            .map_err(|error| io_error(parent, error))?;
+        let folder = Self {
+            path: fresh.path().to_owned(),
+            _lock: lock(fresh.path())?,
+        };
+        folder.write_manifest(manifest)?;
+        let generations = folder.generations();
+        fs::create_dir(&generations).map_err(|error| io_error(&generations, error))?;
+        drop(replaced);
+        fs::rename(fresh.path(), path).map_err(|error| match error.kind() {
+            io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::NotADirectory => {
+                FolderError::Exists {
+                    path: path.display().to_string(),
+                }
+            }
+            _ => io_error(path, error),
+        })?;
+        // The folder is no longer under its temporary name, so there is nothing to delete.
+        let _moved = fresh.keep();
+        sync_folder(parent).map_err(|error| io_error(parent, error))?;
+        Ok(Self {
+            path: path.to_owned(),
+            ..folder
+        })
+    }
+
+    /// Clears the place of a new run folder; an empty folder is no obstacle. Returns the
+    /// lock of the run that was replaced.
+    fn make_room(path: &Path, force: bool) -> Result<Option<Self>, FolderError> {
+        let shown = path.display().to_string();
+        let mut entries = match fs::read_dir(path) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(_) => return Err(FolderError::Exists { path: shown }),
+        };
+        if entries.next().is_none() {
+            return Ok(None);
+        }
+        if !force {
+            return Err(FolderError::Exists { path: shown });
+        }
+        if !path.join("run.json").is_file() {
+            return Err(FolderError::NotReplaceable { path: shown });
+        }
+        let old = Self::open(path)?;
+        fs::remove_dir_all(path).map_err(|error| io_error(path, error))?;
+        Ok(Some(old))
+    }
+
+    /// Opens an existing run folder for writing.
+    ///
+    /// # Errors
+    /// When it is no run folder, or another process works on it.
+    pub fn open(path: &Path) -> Result<Self, FolderError> {
+        if !path.join("run.json").is_file() {
+            return Err(FolderError::NotARun {
+                path: path.display().to_string(),
+            });
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            _lock: lock(path)?,
+        })
+    }
+
+    /// The folder.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// `checkpoint.json`.
+    #[must_use]
+    pub fn checkpoint(&self) -> PathBuf {
+        self.path.join("checkpoint.json")
+    }
+
+    /// `events.jsonl`.
+    #[must_use]
+    pub fn events(&self) -> PathBuf {
+        self.path.join("events.jsonl")
+    }
+
+    /// `summary.json`.
+    #[must_use]
+    pub fn summary(&self) -> PathBuf {
+        self.path.join("summary.json")
+    }
+
+    /// The folder of kept checkpoints.
+    #[must_use]
+    pub fn generations(&self) -> PathBuf {
+        self.path.join("generations")
+    }
+
+    /// The kept checkpoint of a generation.
+    #[must_use]
+    pub fn generation(&self, generation: u64) -> PathBuf {
+        self.generations().join(format!("{generation:06}.json"))
+    }
+
+    /// Writes `run.json`.
+    ///
+    /// # Errors
+    /// When the operating system refuses.
+    pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), FolderError> {
+        let path = self.path.join("run.json");
+        let written = serde_json::to_vec_pretty(manifest)
+            .map_err(io::Error::from)
+            .and_then(|bytes| write_atomically(&path, &bytes));
+        written.map_err(|error| io_error(&path, error))
+    }
+
+    /// Reads the `run.json` of a run folder.
+    ///
+    /// # Errors
+    /// When it is missing or is not the `run.json` of a valid run.
+    pub fn read_manifest(folder: &Path) -> Result<Manifest, FolderError> {
+        let file = folder.join("run.json");
+        let path = file.display().to_string();
+        if !file.is_file() {
+            return Err(FolderError::NotARun {
+                path: folder.display().to_string(),
+            });
+        }
+        let text = read_text(&file, 4 * MAX_FILE_BYTES).map_err(|source| FolderError::Read {
+            path: path.clone(),
+            source,
+        })?;
+        let wrong = |message| FolderError::Manifest {
+            path: path.clone(),
+            message,
+        };
+        let mut json = serde_json::Deserializer::from_str(&text);
+        let mut manifest: Manifest = serde_path_to_error::deserialize(&mut json)
+            .map_err(|error| wrong(format!("at {}: {}", error.path(), error.inner())))?;
+        if manifest.format != MANIFEST_FORMAT {
+            let found = manifest.format;
+            return Err(wrong(format!(
+                "format: found {found}; allowed: {MANIFEST_FORMAT}"
+            )));
+        }
+        manifest.scenario = manifest
+            .scenario
+            .checked("scenario")
+            .map_err(|error| wrong(error.to_string()))?;
+        Ok(manifest)
+    }
+}
+
+fn lock(folder: &Path) -> Result<File, FolderError> {
+    let path = folder.join("lock");
+    let file = OpenOptions::new()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(&path)
+        .map_err(|error| io_error(&path, error))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(FolderError::InUse {
+            path: folder.display().to_string(),
+        }),
+        Err(TryLockError::Error(error)) => Err(io_error(&path, error)),
+    }
+}
+
+fn io_error(path: &Path, source: io::Error) -> FolderError {
+    FolderError::Io {
+        path: path.display().to_string(),
+        source,
+    }
+}

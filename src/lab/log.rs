@@ -1,0 +1,161 @@
+//! `events.jsonl`: one recorded event a line, append-only.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use thiserror::Error;
+
+use super::checkpoint::LogPosition;
+use super::event::{EVENT_FORMAT, Event};
+
+/// Longest line that is read, in bytes: a generation of the largest population that a
+/// scenario may have.
+const MAX_LINE_BYTES: u64 = 1 << 26;
+
+/// Why an event log cannot be used.
+#[derive(Debug, Error)]
+pub enum LogError {
+    /// The operating system refused.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// A line is not an event.
+    #[error("line {line}: {message}")]
+    Line {
+        /// Number of the line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// It does not begin with the events that the checkpoint was taken after.
+    #[error(
+        "found {found}; allowed: a file that begins with the {} lines ({} bytes, CRC-32 {:08x}) \
+         that the checkpoint was taken after",
+        .expected.lines, .expected.bytes, .expected.crc32
+    )]
+    NotOfCheckpoint {
+        /// What was found.
+        found: String,
+        /// What the checkpoint says.
+        expected: LogPosition,
+    },
+}
+
+/// Appends events to a log and knows its position.
+#[derive(Debug)]
+pub(super) struct Log {
+    file: File,
+    position: LogPosition,
+}
+
+impl Log {
+    /// An empty log.
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
+        let file = OpenOptions::new()
+            .create(true)
+            .write(true)
+            .truncate(true)
+            .open(path)?;
+        Ok(Self {
+            file,
+            position: LogPosition::default(),
+        })
+    }
+
+    /// The log as it was at `position`; what was written later is cut off.
+    pub(super) fn reopen(path: &Path, position: LogPosition) -> Result<Self, LogError> {
+        let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+        let mut hasher = crc32fast::Hasher::new();
+        let mut left = position.bytes;
+        let mut buffer = [0; 1 << 16];
+        while left > 0 {
+            let wanted = buffer
+                .len()
+                .min(usize::try_from(left).unwrap_or(usize::MAX));
+            let read = file.read(&mut buffer[..wanted])?;
+            if read == 0 {
+                return Err(LogError::NotOfCheckpoint {
+                    found: format!("{} bytes", position.bytes - left),
+                    expected: position,
+                });
+            }
+            hasher.update(&buffer[..read]);
+            left -= read as u64;
+        }
+        let crc32 = hasher.finalize();
+        if crc32 != position.crc32 {
+            return Err(LogError::NotOfCheckpoint {
+                found: format!("CRC-32 {crc32:08x} of these bytes"),
+                expected: position,
+            });
+        }
+        file.set_len(position.bytes)?;
+        file.seek(SeekFrom::Start(position.bytes))?;
+        Ok(Self { file, position })
+    }
+
+    /// Appends one event.
+    pub(super) fn append(&mut self, event: &Event) -> io::Result<()> {
+        let mut line = serde_json::to_vec(event)?;
+        line.push(b'\n');
+        self.file.write_all(&line)?;
+        let mut hasher =
+            crc32fast::Hasher::new_with_initial_len(self.position.crc32, self.position.bytes);
+        hasher.update(&line);
+        self.position = LogPosition {
+            lines: self.position.lines + 1,
+            bytes: self.position.bytes + line.len() as u64,
+            crc32: hasher.finalize(),
+        };
+        Ok(())
+    }
+
+    /// Makes what was appended durable.
+    pub(super) fn sync(&self) -> io::Result<()> {
+        self.file.sync_data()
+    }
+
+    pub(super) fn position(&self) -> LogPosition {
+        self.position
+    }
+}
+
+/// Reads the events of a log in order. A last line without its end is dropped: the
+/// process died while it wrote.
+///
+/// # Errors
+/// When the file cannot be read or a complete line is not an event.
+pub fn read_events(path: &Path) -> Result<Vec<Event>, LogError> {
+    let mut reader = BufReader::new(File::open(path)?);
+    let mut events = Vec::new();
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let read = reader
+            .by_ref()
+            .take(MAX_LINE_BYTES)
+            .read_until(b'\n', &mut line)?;
+        if line.last() != Some(&b'\n') {
+            if read as u64 == MAX_LINE_BYTES {
+                return Err(LogError::Line {
+                    line: events.len() + 1,
+                    message: format!("longer than allowed: {MAX_LINE_BYTES} bytes"),
+                });
+            }
+            return Ok(events);
+        }
+        let event = serde_json::from_slice(&line).map_err(|error| LogError::Line {
+            line: events.len() + 1,
+            message: error.to_string(),
+        })?;
+        if let Event::Started { format, .. } = &event
+            && *format != EVENT_FORMAT
+        {
+            return Err(LogError::Line {
+                line: events.len() + 1,
+                message: format!("format: found {format}; allowed: {EVENT_FORMAT}"),
+            });
+        }
+        events.push(event);
+    }
+}

@@ -1,0 +1,69 @@
+//! `run.json`: what was run, by which program, where and when.
+
+use std::path::Path;
+use std::time::SystemTime;
+
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::Scenario;
+
+/// Version of the format of `run.json`.
+pub const MANIFEST_FORMAT: u32 = 1;
+
+/// What a run folder holds the results of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Version of this format.
+    pub format: u32,
+    /// The complete scenario, defaults and settings written out.
+    pub scenario: Scenario,
+    /// Seed of all random streams.
+    pub seed: u64,
+    /// How the run was started.
+    pub started: Invocation,
+    /// How it was resumed, each time.
+    pub resumed: Vec<Invocation>,
+}
+
+/// One start of the program.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Invocation {
+    /// Version of the program.
+    pub version: String,
+    /// Commit that the program was built from.
+    pub commit: String,
+    /// Name of the machine.
+    pub host: String,
+    /// The command line.
+    pub command_line: Vec<String>,
+    /// When, in UTC.
+    pub time: String,
+    /// Computing threads.
+    pub threads: usize,
+}
+
+impl Invocation {
+    /// This start of the program.
+    #[must_use]
+    pub fn now(threads: usize) -> Self {
+        let lossy = |text: std::ffi::OsString| text.to_string_lossy().into_owned();
+        let mut command_line: Vec<_> = std::env::args_os().map(lossy).collect();
+        // Which file the program was started from says nothing about the run.
+        if let Some(program) = command_line.first_mut() {
+            let name = Path::new(program)
+                .file_name()
+                .map(|name| name.to_string_lossy().into_owned());
+            *program = name.unwrap_or_default();
+        }
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: env!("MAXQ_LAB_COMMIT").to_owned(),
+            host: lossy(gethostname::gethostname()),
+            command_line,
+            time: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+            threads,
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! The result of a run: what `run` prints and `summary.json` holds.
+
+use serde::Serialize;
+
+use crate::evolution::{GenerationRecord, RankedRecord};
+
+/// The result of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Generations lived.
+    pub generations: u64,
+    /// Whether evolution converged; otherwise it ended at its limit, or was stopped.
+    pub converged: bool,
+    /// Whether the run was stopped before evolution was over.
+    pub stopped: bool,
+    /// The best individual of the last generation; none before the first has lived.
+    pub best: Option<BestIndividual>,
+    /// Control steps of the run, training of the primitive subtasks included.
+    pub control_steps: u64,
+    /// Wall-clock time that this process has taken, in seconds.
+    pub wall_seconds: f64,
+    /// The run folder.
+    pub run_dir: String,
+}
+
+/// The best individual of a generation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BestIndividual {
+    /// Its id.
+    pub id: u64,
+    /// Its hierarchy as text.
+    pub tree: String,
+    /// Fitness as the mean number of time steps of a scored trial. It is the luckiest of
+    /// many; `evaluate` tells how good the structure is.
+    pub fitness: f64,
+    /// Composite subtasks in it, the root counted.
+    pub composites: usize,
+    /// Distinct primitive subtasks in it.
+    pub primitives: Vec<String>,
+    /// For each state type the primitive subtasks that can be selected.
+    pub primitives_by_state_type: Vec<Vec<String>>,
+}
+
+impl BestIndividual {
+    /// The best of a generation.
+    #[must_use]
+    pub fn of(record: &GenerationRecord) -> Option<Self> {
+        let best: &RankedRecord = record.individuals.first()?;
+        Some(Self {
+            id: best.id,
+            tree: best.tree.clone(),
+            fitness: record.mean_trial_steps(1)?,
+            composites: best.composites,
+            primitives: best.primitives.clone(),
+            primitives_by_state_type: best.primitives_by_state_type.clone(),
+        })
+    }
+}

@@ -1,0 +1,41 @@
+//! From a scenario to the code compiled for its world.
+
+use thiserror::Error;
+
+use crate::evolution::{Experiment, ExperimentError};
+use crate::scenario::{Scenario, WorldModel};
+use crate::worlds::World;
+use crate::worlds::foraging::{ForagingError, ForagingWorld};
+
+/// Something to be done with the experiment of a scenario, whatever its world.
+pub trait WorldTask {
+    /// What comes of it.
+    type Output;
+
+    /// Does it. This is compiled once for each world.
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output;
+}
+
+/// Why a scenario cannot be made ready.
+#[derive(Debug, Error)]
+pub enum SetupError {
+    /// Its foraging world cannot be built.
+    #[error(transparent)]
+    Foraging(#[from] ForagingError),
+    /// Its first hierarchies cannot be used.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
+}
+
+/// Makes `scenario` ready and carries out `task` with it.
+///
+/// # Errors
+/// When the scenario's world or its hierarchies cannot be built.
+pub fn with_world<T: WorldTask>(scenario: Scenario, task: T) -> Result<T::Output, SetupError> {
+    match &scenario.world {
+        WorldModel::Foraging(model) => {
+            let world = ForagingWorld::new(model)?;
+            Ok(task.carry_out(Experiment::new(scenario, world)?))
+        }
+    }
+}
