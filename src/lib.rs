@@ -5,7 +5,23 @@
 //! with RBF function approximation while it acts, and typed crossover mixes the best.
 //! The method is that of S. Elfwing, *An Evolutionary Approach to Automatic
 //! Construction of the Structure in Hierarchical Reinforcement Learning* (KTH 2003),
-//! called "Thesis" throughout.
+//! called "Thesis" throughout. "Dietterich 2000" is T. G. Dietterich, *Hierarchical
+//! Reinforcement Learning with the MAXQ Value Function Decomposition*, JAIR 13.
+//!
+//! # The rooms of the house
+//!
+//! Imports point one way, from the top of this table to its bottom; [`random`] and
+//! [`files`] serve all.
+//!
+//! | room | what is in it |
+//! | --- | --- |
+//! | [`cli`] | one file per command |
+//! | [`lab`] | one run: evolution thread, events, commands, run folder, checkpoint |
+//! | [`evolution`] | population, selection, crossover, the generation loop (Algorithm 3.1) |
+//! | [`learning`] | RBF features, action selection, primitive subtasks, MAXQ-Q |
+//! | [`hierarchy`] | trees of subtasks, typing rules, text form, structural difference |
+//! | [`worlds`] | where agents act, and the subtasks that they have there |
+//! | [`scenario`] | what an experiment is: the JSON model, its defaults, its rules |
 
 #![deny(missing_docs)]
 

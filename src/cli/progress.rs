@@ -54,10 +54,9 @@ fn describe(record: &GenerationRecord) -> String {
     let middle = record.individuals.len() / 2;
     let mean = |rank| record.mean_trial_steps(rank).unwrap_or(f64::NAN);
     format!(
-        "generation {}: best {:.0}, rank {middle} {:.0} steps a trial, difference {:.1}",
+        "generation {}: best {:.0}, rank {middle} {:.0} steps a trial",
         record.generation,
         mean(1),
-        mean(middle),
-        record.mean_difference
+        mean(middle)
     )
 }

@@ -76,9 +76,7 @@ pub enum RunError {
         source: RecordError,
     },
     /// The limit of a resumed run is not above what it has lived.
-    #[error(
-        "--generations: found {found}; allowed: {lived} or more, the generations lived, up to 100000"
-    )]
+    #[error("--generations: found {found}; allowed: {lived} (the generations lived) to 100000")]
     Generations {
         /// The limit asked for.
         found: u64,
