@@ -1,0 +1,137 @@
+//! Contract: evolution is Algorithm 3.1 with the operators of the method.
+//!
+//! Selection here works on a noisy fitness, so that even a wrong evolution "finds"
+//! something: only its parts can be tested. Crossover: valid trees, nothing lost,
+//! learned values where they belong, sites without a bias. Breeding: who lives on, who
+//! dies, who mates. A generation: who runs which trials, from where, what counts, what
+//! is reported, and when it is over.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+#[path = "evolution/breeding.rs"]
+mod breeding;
+#[path = "evolution/crossover.rs"]
+mod crossover;
+#[path = "evolution/generation.rs"]
+mod generation;
+#[path = "evolution/policy.rs"]
+mod policy;
+mod trees;
+
+use maxq_lab::evolution::{
+    Evolution, Experiment, GenerationRecord, Individual, Origin, State, Workers,
+};
+use maxq_lab::hierarchy::{Tree, parse};
+use maxq_lab::learning::{CompositeValues, Gate, Hierarchy, Skill, Skills};
+use maxq_lab::scenario::{Scenario, WorldModel};
+use maxq_lab::worlds::foraging::ForagingWorld;
+use maxq_lab::worlds::{Catalogue, World};
+use rand::RngExt;
+use rand::rngs::SmallRng;
+
+/// The smoke scenario with short trials, in which nothing is learned unless a test
+/// wants it: what individuals have when they have lived is what they inherited.
+fn still_scenario() -> Scenario {
+    let mut scenario = Scenario::load("smoke").unwrap();
+    scenario.learning.learning_rate = 0.0;
+    scenario.learning.temperature_decrease = 1.0;
+    scenario.evolution.trial_step_limit = 2;
+    scenario.evolution.trials_per_generation = 2;
+    scenario.evolution.policy_samples = 1;
+    scenario
+}
+
+fn foraging(scenario: &Scenario) -> ForagingWorld {
+    let WorldModel::Foraging(model) = &scenario.world;
+    ForagingWorld::new(model).unwrap()
+}
+
+fn experiment(scenario: Scenario) -> Experiment<ForagingWorld> {
+    let world = foraging(&scenario);
+    Experiment::new(scenario, world).unwrap()
+}
+
+/// Primitive subtasks that have learned nothing.
+fn untrained(catalogue: &Catalogue) -> Skills {
+    let skills = catalogue.primitives();
+    let skills = skills.map(|primitive| Skill::new(primitive, catalogue, 0.0));
+    Skills::new(skills.collect(), catalogue).unwrap()
+}
+
+/// An individual with random learned values, no two alike.
+fn learned(id: u64, tree: Tree, catalogue: &Catalogue, rng: &mut SmallRng) -> Individual {
+    let (tree, mut values) = Hierarchy::new(tree, catalogue, 2.0, 0.123).into_parts();
+    for (node, value) in values.iter_mut().enumerate() {
+        let Some(value) = value else { continue };
+        let mut vectors = value.vectors();
+        for parameter in vectors.iter_mut().flatten().flatten() {
+            *parameter = -rng.random::<f32>();
+        }
+        let temperature = rng.random_range(0.1..1.9);
+        let subtask = tree.subtask(node);
+        let random = CompositeValues::from_vectors(subtask, catalogue, temperature, &vectors);
+        *value = random.unwrap();
+    }
+    Individual {
+        id,
+        origin: Origin::HandCoded,
+        hierarchy: Hierarchy::from_parts(tree, values).unwrap(),
+    }
+}
+
+/// An evolution of which these individuals are the ranked generation `generation`; 0
+/// means that they have not lived yet.
+fn state(individuals: Vec<Individual>, catalogue: &Catalogue, generation: u64) -> State {
+    State {
+        generation,
+        next_id: individuals
+            .iter()
+            .map(|individual| individual.id)
+            .max()
+            .unwrap_or(0)
+            + 1,
+        individuals,
+        skills: untrained(catalogue),
+        control_steps: 1000,
+        converged: false,
+    }
+}
+
+/// Individuals with these trees and random learned values, with ids from 100.
+fn individuals<'t>(
+    trees: impl IntoIterator<Item = &'t str>,
+    catalogue: &Catalogue,
+    rng: &mut SmallRng,
+) -> Vec<Individual> {
+    let trees = (100..).zip(trees);
+    trees
+        .map(|(id, text)| learned(id, parse(text, catalogue).unwrap(), catalogue, rng))
+        .collect()
+}
+
+/// One step of evolution from a state: what is reported, and the state after it.
+fn step<W: World>(
+    experiment: &Experiment<W>,
+    seed: u64,
+    state: State,
+) -> (GenerationRecord, State) {
+    let workers = Workers::new(1).unwrap();
+    let gate = Gate::default();
+    let evolution = Evolution::resume(experiment, &workers, seed, state, &gate);
+    let mut evolution = evolution.unwrap();
+    let record = evolution.step(&gate, |_| ()).unwrap();
+    let after = evolution.state().as_ref().clone();
+    (record, after)
+}
+
+/// Whether counts are what a fair draw with these probabilities gives: every count
+/// within five standard deviations.
+fn assert_frequencies(counts: &[u32], probabilities: &[f64]) {
+    let all = f64::from(counts.iter().sum::<u32>());
+    assert!((probabilities.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+    for (count, p) in counts.iter().zip(probabilities) {
+        let allowed = 5.0 * (all * p * (1.0 - p)).sqrt() + 1e-9;
+        let off = (f64::from(*count) - all * p).abs();
+        assert!(off <= allowed, "{counts:?} for {probabilities:?}");
+    }
+}

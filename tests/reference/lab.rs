@@ -1,0 +1,78 @@
+//! What an agent needs: a scenario, its world, trained primitive subtasks.
+
+use maxq_lab::evolution::{Experiment, Workers};
+use maxq_lab::hierarchy::parse;
+use maxq_lab::learning::{Agent, Gate, Hierarchy, Skills};
+use maxq_lab::scenario::{ForagingModel, Scenario, WorldModel};
+use maxq_lab::worlds::foraging::ForagingWorld;
+
+use super::Recorder;
+
+/// Longest trial.
+pub const STEP_LIMIT: u32 = 20_000;
+
+/// A world, its scenario, and primitive subtasks trained for a short while.
+pub struct Lab {
+    /// The scenario and its world.
+    pub experiment: Experiment<ForagingWorld>,
+    model: ForagingModel,
+    /// The primitive subtasks.
+    pub skills: Skills,
+}
+
+impl Lab {
+    /// The scenario with these settings.
+    pub fn new(scenario: &str, settings: &[&str]) -> Self {
+        let primitives = [
+            "avoid",
+            "wander",
+            "approach_battery",
+            "approach_nest",
+            "turn",
+        ];
+        let training = primitives
+            .map(|p| format!("world.foraging.primitive_training.{p}.steps=10000"))
+            .into_iter();
+        let settings = settings.iter().map(|&setting| setting.to_owned());
+        let settings: Vec<_> = training.chain(settings).collect();
+        let scenario = Scenario::load(scenario).unwrap();
+        let scenario = scenario.with_settings(&settings).unwrap();
+        let WorldModel::Foraging(model) = scenario.world.clone();
+        let world = ForagingWorld::new(&model).unwrap();
+        let experiment = Experiment::new(scenario, world).unwrap();
+        let workers = Workers::new(1).unwrap();
+        let skills = experiment.train(1, 0, &workers, &Gate::default()).unwrap();
+        Self {
+            experiment,
+            model,
+            skills,
+        }
+    }
+
+    /// A hierarchy that has learned nothing.
+    pub fn newborn(&self, tree: &str) -> Hierarchy {
+        let tree = parse(tree, self.experiment.catalogue()).unwrap();
+        self.experiment.newborn(tree)
+    }
+
+    /// An agent with this hierarchy.
+    pub fn agent(&self, hierarchy: Hierarchy) -> Agent<'_, ForagingWorld> {
+        Agent::new(
+            &self.experiment.world,
+            &self.experiment.encoder,
+            &self.experiment.scenario.learning,
+            hierarchy,
+            self.skills.clone(),
+            STEP_LIMIT,
+        )
+    }
+
+    /// A recorder of what an agent does.
+    pub fn recorder(&self) -> Recorder<'_> {
+        Recorder {
+            world: &self.experiment.world,
+            features: self.model.features.clone(),
+            events: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Thesis Tables 4.1 to 4.3 and 4.6 and Eq. 2.22, written down once more.
+
+use maxq_lab::scenario::{FeatureModel, RbfWidth};
+
+/// The terminal state type, after the four of Table 4.1 numbered from 1.
+pub const DELIVERED: usize = 5;
+/// Inputs of a percept: five proximity sensors, the angle, the distance.
+const PROXIMITY: [usize; 5] = [0, 1, 2, 3, 4];
+const ANGLE: usize = 5;
+const DISTANCE: usize = 6;
+
+/// What a subtask's value functions look at (Table 4.6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// The proximity sensors.
+    Proximity,
+    /// Angle, distance and proximity sensors.
+    Target,
+    /// The angle, for Approach battery and Approach nest.
+    Approach,
+    /// The angle, for Turn.
+    Turn,
+}
+
+/// A row of Table 4.2 or 4.3.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// The state types it is active in.
+    pub active: &'static [usize],
+    /// The state types that are its goal; none for a primitive subtask.
+    pub goal: &'static [usize],
+    /// What its value functions look at.
+    pub input: Input,
+    /// Whether it is primitive.
+    pub primitive: bool,
+}
+
+/// The row of a subtask.
+pub fn row(name: &str) -> Row {
+    let composite = |active, goal, input| Row {
+        active,
+        goal,
+        input,
+        primitive: false,
+    };
+    let primitive = |active, input| Row {
+        active,
+        goal: &[],
+        input,
+        primitive: true,
+    };
+    match name {
+        "Root" => composite(&[1, 2, 3, 4], &[DELIVERED], Input::Proximity),
+        "Capture" => composite(&[1, 2], &[3, 4, DELIVERED], Input::Proximity),
+        "Deliver" => composite(&[3, 4], &[DELIVERED], Input::Proximity),
+        "FindBattery" => composite(&[1], &[2, 3, 4, DELIVERED], Input::Proximity),
+        "VisibleBattery" => composite(&[2], &[3, 4, DELIVERED], Input::Target),
+        "FindNest" => composite(&[3], &[4, DELIVERED], Input::Proximity),
+        "VisibleNest" => composite(&[4], &[DELIVERED], Input::Target),
+        "Avoid" | "Wander" => primitive(&[1, 2, 3, 4], Input::Proximity),
+        "ApproachBattery" => primitive(&[2], Input::Approach),
+        "ApproachNest" => primitive(&[4], Input::Approach),
+        "Turn" => primitive(&[2, 4], Input::Turn),
+        other => panic!("{other} is in no table"),
+    }
+}
+
+/// Eq. 2.22 on the full grid: one exponential a centre, divided by their sum. The
+/// grid's last input varies fastest.
+pub fn phi(input: Input, percept: &[f32], model: &FeatureModel) -> Vec<f64> {
+    let proximity = PROXIMITY.map(|sensor| (sensor, model.proximity_centres));
+    let axes: Vec<(usize, usize)> = match input {
+        Input::Proximity => proximity.to_vec(),
+        Input::Target => [
+            (ANGLE, model.angle_centres),
+            (DISTANCE, model.distance_centres),
+        ]
+        .into_iter()
+        .chain(proximity)
+        .collect(),
+        Input::Approach => vec![(ANGLE, model.approach_centres)],
+        Input::Turn => vec![(ANGLE, model.turn_centres)],
+    };
+    let centres: usize = axes.iter().map(|(_, centres)| centres).product();
+    let gaussians: Vec<f64> = (0..centres)
+        .map(|centre| (-exponent(centre, &axes, percept, model.rbf_width)).exp())
+        .collect();
+    let sum: f64 = gaussians.iter().sum();
+    gaussians.iter().map(|gaussian| gaussian / sum).collect()
+}
+
+/// |s - c|^2 / 2 sigma^2 for one centre of the grid, sigma being each axis's own.
+fn exponent(mut centre: usize, axes: &[(usize, usize)], percept: &[f32], width: RbfWidth) -> f64 {
+    let mut exponent = 0.0;
+    for &(input, centres) in axes.iter().rev() {
+        let spacing = 1.0 / (centres - 1) as f64;
+        let sigma_squared = match width {
+            RbfWidth::Spacing => 2.0 * spacing * spacing,
+            RbfWidth::Variance => 2.0_f64.sqrt() * spacing,
+        };
+        let c = (centre % centres) as f64 * spacing;
+        exponent += (f64::from(percept[input]) - c).powi(2) / (2.0 * sigma_squared);
+        centre /= centres;
+    }
+    exponent
+}
