@@ -113,11 +113,11 @@ impl Mind<'_> {
         values.state = now.state;
         let skill = &self.skills.all()[index];
         let features = self.encoder.encode(skill.map, &mut now.features);
-        values.best = f32::NEG_INFINITY;
-        for (value, vector) in values.actions.iter_mut().zip(skill.padded()) {
-            *value = linear::value(vector, features);
-            values.best = values.best.max(*value);
-        }
+        skill.evaluate(features, &mut values.actions);
+        values.best = values
+            .actions
+            .iter()
+            .fold(f32::NEG_INFINITY, |a, &b| a.max(b));
     }
 
     /// V(i, s) of a node, Algorithm 2.5 with Eq. 3.2: choose the child with C~, return
