@@ -95,20 +95,19 @@ impl Encoder {
 
     fn compute(&self, map: MapId, features: &mut Features) {
         let grid = &self.grids[map.index()];
+        if let Some((base, _)) = grid.base {
+            self.encode(base, features);
+        }
         // Taken out, so that the base's features can be read beside it.
         let mut out = std::mem::take(&mut features.maps[map.index()]);
-        let mut width = 1;
-        out[0] = 1.0;
-        if let Some((base, base_width)) = grid.base {
-            width = base_width;
-            out[..width].copy_from_slice(&self.encode(base, features)[..width]);
-        }
         Arch::new().dispatch(Compute {
             grid,
             inputs: &features.inputs,
+            base: grid
+                .base
+                .map(|(base, width)| &features.maps[base.index()][..width]),
             gaussians: &mut features.gaussians,
             out: &mut out,
-            width,
         });
         features.maps[map.index()] = out;
     }
@@ -149,14 +148,14 @@ impl Grid {
     }
 }
 
-/// Computes the features of a map from those that its grid starts from, which are
-/// the first `width` numbers of `out`.
+/// Computes the features of one map.
 struct Compute<'a> {
     grid: &'a Grid,
     inputs: &'a [f32],
+    /// The features that the grid starts from.
+    base: Option<&'a [f32]>,
     gaussians: &'a mut [f32],
     out: &'a mut [f32],
-    width: usize,
 }
 
 impl WithSimd for Compute<'_> {
@@ -165,45 +164,75 @@ impl WithSimd for Compute<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { grid, out, .. } = self;
-        let lanes = self.gaussians.as_chunks_mut::<LANES>().0.iter_mut();
-        for (gaussians, lanes) in grid.gaussians.chunks(LANES).zip(lanes) {
-            for (gaussian, lane) in gaussians.iter().zip(&mut *lanes) {
-                let offset = self.inputs[gaussian.input] - gaussian.centre;
-                *lane = offset * offset * gaussian.exponent;
+        grid.evaluate(self.inputs, self.gaussians);
+        grid.normalise(self.gaussians);
+        let Some((&centres, axes)) = grid.axes.split_first() else {
+            return;
+        };
+        let (first, mut rest) = self.gaussians.split_at(centres);
+        let mut width = centres;
+        if let Some(base) = self.base {
+            width *= base.len();
+            for (block, &factor) in out.chunks_exact_mut(base.len()).zip(first) {
+                scaled(simd, block, base, factor);
             }
-            exponentials(lanes);
+        } else {
+            out[..centres].copy_from_slice(first);
         }
-        let mut rest = &*self.gaussians;
-        let mut sum = 1.0;
-        for &centres in &grid.axes {
-            let (axis, others) = rest.split_at(centres);
-            sum *= axis.iter().sum::<f32>();
-            rest = others;
-        }
-        // One division normalises along all axes.
-        let mut width = self.width;
-        scale(simd, &mut out[..width], 1.0 / sum);
-        let mut rest = &*self.gaussians;
-        for &centres in &grid.axes {
-            let (axis, others) = rest.split_at(centres);
-            width = extend(simd, out, width, axis);
+        for &centres in axes {
+            let (factors, others) = rest.split_at(centres);
+            extend(simd, out, width, factors);
+            width *= centres;
             rest = others;
         }
     }
 }
 
-/// Multiplies the first `width` numbers by each factor, one block a factor, and
-/// returns the new width.
+impl Grid {
+    /// The Gaussians of the inputs.
+    #[inline(always)]
+    fn evaluate(&self, inputs: &[f32], out: &mut [f32]) {
+        let lanes = out.as_chunks_mut::<LANES>().0.iter_mut();
+        for (gaussians, lanes) in self.gaussians.chunks(LANES).zip(lanes) {
+            for (gaussian, lane) in gaussians.iter().zip(&mut *lanes) {
+                let offset = inputs[gaussian.input] - gaussian.centre;
+                *lane = offset * offset * gaussian.exponent;
+            }
+            exponentials(lanes);
+        }
+    }
+
+    /// Scales the first axis so that the products will add up to 1: one division
+    /// for all axes.
+    #[inline(always)]
+    fn normalise(&self, gaussians: &mut [f32]) {
+        let mut rest = &*gaussians;
+        let mut sum = 1.0;
+        for &centres in &self.axes {
+            let (axis, others) = rest.split_at(centres);
+            sum *= axis.iter().sum::<f32>();
+            rest = others;
+        }
+        let scale = 1.0 / sum;
+        let first = self.axes.first().map_or(0, |&centres| centres);
+        for gaussian in &mut gaussians[..first] {
+            *gaussian *= scale;
+        }
+    }
+}
+
+/// Multiplies the first `width` numbers by each factor, one block a factor.
 #[inline(always)]
-fn extend<S: Simd>(simd: S, out: &mut [f32], width: usize, factors: &[f32]) -> usize {
+fn extend<S: Simd>(simd: S, out: &mut [f32], width: usize, factors: &[f32]) {
     let (base, mut rest) = out.split_at_mut(width);
     for &factor in &factors[1..] {
         let (block, others) = rest.split_at_mut(width);
         scaled(simd, block, base, factor);
         rest = others;
     }
-    scale(simd, base, factors[0]);
-    width * factors.len()
+    for number in base {
+        *number *= factors[0];
+    }
 }
 
 /// `out = numbers * factor`, for vectors of the same length.
@@ -220,23 +249,11 @@ fn scaled<S: Simd>(simd: S, out: &mut [f32], numbers: &[f32], factor: f32) {
     }
 }
 
-/// Multiplies all numbers by a factor.
-#[inline(always)]
-fn scale<S: Simd>(simd: S, numbers: &mut [f32], factor: f32) {
-    let (vectors, rest) = S::as_mut_simd_f32s(numbers);
-    for vector in vectors {
-        *vector = simd.mul_f32s(*vector, simd.splat_f32s(factor));
-    }
-    for number in rest {
-        *number *= factor;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worlds::Axis;
     use crate::scenario::{RbfWidth, Scenario, WorldModel};
+    use crate::worlds::Axis;
     use crate::worlds::World;
     use crate::worlds::foraging::{ForagingWorld, INPUTS};
     use proptest::prelude::*;

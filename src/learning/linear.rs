@@ -91,6 +91,52 @@ impl WithSimd for Learn<'_> {
     }
 }
 
+/// Gradient steps on C~ and C of a child of a composite subtask, for states one
+/// before the other.
+pub(super) struct Replay<'a, F> {
+    /// The parameters of C~ and of C.
+    pub(super) parameters: [&'a mut [f32]; 2],
+    /// The features of the states, the most recent state last.
+    pub(super) features: &'a [f32],
+    /// The discount for each state, the most recent state first.
+    pub(super) discounts: &'a [f32],
+    /// What C~ and C are to be, not discounted.
+    pub(super) targets: [f32; 2],
+    pub(super) learning_rate: f32,
+    /// Is told how many states were more recent, and the errors of C~ and C.
+    pub(super) watch: F,
+}
+
+impl<F: FnMut(usize, [f32; 2])> Replay<'_, F> {
+    /// Learns from all states, the most recent first.
+    #[inline]
+    pub(super) fn run(self) {
+        Arch::new().dispatch(self);
+    }
+}
+
+impl<F: FnMut(usize, [f32; 2])> WithSimd for Replay<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let [inside, outside] = self.parameters;
+        let width = inside.len();
+        let mut rest = self.features;
+        for (recent, discount) in self.discounts.iter().enumerate() {
+            let (others, features) = rest.split_at(rest.len() - width);
+            rest = others;
+            let errors = [
+                discount * self.targets[0] - dot(simd, inside, features),
+                discount * self.targets[1] - dot(simd, outside, features),
+            ];
+            add(simd, inside, features, self.learning_rate * errors[0]);
+            add(simd, outside, features, self.learning_rate * errors[1]);
+            (self.watch)(recent, errors);
+        }
+    }
+}
+
 /// Registers that make up all lanes.
 #[inline(always)]
 fn registers<S: Simd>() -> usize {
@@ -99,7 +145,7 @@ fn registers<S: Simd>() -> usize {
 
 /// The scalar product of two vectors of the same padded length.
 #[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, parameters: &[f32], features: &[f32]) -> f32 {
+fn dot<S: Simd>(simd: S, parameters: &[f32], features: &[f32]) -> f32 {
     // Spelled out in registers: the compiler alone makes half-empty vectors of it.
     let mut sums = [simd.splat_f32s(0.0); LANES];
     let parameters = S::as_simd_f32s(parameters).0;
@@ -134,7 +180,7 @@ pub(super) fn dot<S: Simd>(simd: S, parameters: &[f32], features: &[f32]) -> f32
 
 /// `parameters += step * features`, for vectors of the same padded length.
 #[inline(always)]
-pub(super) fn add<S: Simd>(simd: S, parameters: &mut [f32], features: &[f32], step: f32) {
+fn add<S: Simd>(simd: S, parameters: &mut [f32], features: &[f32], step: f32) {
     let step = simd.splat_f32s(step);
     let parameters = S::as_mut_simd_f32s(parameters).0;
     for (p, f) in parameters.iter_mut().zip(S::as_simd_f32s(features).0) {
