@@ -37,6 +37,7 @@ use thiserror::Error;
 mod arena;
 mod catalogue;
 mod motion;
+mod rays;
 mod sensors;
 
 pub use arena::{Arena, Wall};
