@@ -4,17 +4,19 @@
 //! subtasks, so that a trial can be taken one time step at a time: paused, watched,
 //! ended at any moment.
 
+use std::ops::Range;
+
 use rand::RngExt;
 
+use super::Encoder;
 use super::gate::{Gate, Stopped};
 use super::hierarchy::Hierarchy;
-use super::linear;
+use super::linear::Replay;
 use super::observe::{Observer, Update};
 use super::plan::Plan;
 use super::selection::{Softmax, uniform};
 use super::situation::{Completion, Mind, Situation};
 use super::skills::Skills;
-use super::{CompositeValues, Encoder};
 use crate::random::Stream;
 use crate::scenario::{
     CompletionBootstrap, CompositeChoice, CoolOn, LearningModel, PrimitiveLearning, PseudoReward,
@@ -37,9 +39,17 @@ struct Frame {
 struct Log<P> {
     types: Vec<StateType>,
     /// Feature vectors for each map that a composite with composite children uses.
-    features: Vec<(MapId, Vec<f32>)>,
+    features: Vec<LoggedFeatures>,
     /// Percepts, where the bootstrap value is taken in the updated state.
     percepts: Option<Vec<P>>,
+}
+
+/// The feature vectors of one map, one state after the other.
+#[derive(Clone, Debug)]
+struct LoggedFeatures {
+    map: MapId,
+    width: usize,
+    vectors: Vec<f32>,
 }
 
 /// An agent: a hierarchy that acts in a world and learns.
@@ -278,7 +288,11 @@ impl<'r, W: World> Agent<'r, W> {
     ///
     /// The bootstrap values are computed once, before the first update.
     fn learn(&mut self, frame: Frame, terminal: bool, observer: &mut impl Observer<W>) {
-        let Frame { node, child, .. } = frame;
+        let Frame {
+            node,
+            child,
+            started,
+        } = frame;
         let mind = &mut self.mind;
         let pseudo_reward = pseudo_reward(
             self.model.pseudo_reward,
@@ -296,63 +310,52 @@ impl<'r, W: World> Agent<'r, W> {
             }
         }
         inside += pseudo_reward;
-        let alpha = self.model.learning_rate as f32;
-        let plan = mind.plan.nodes[node];
+        let map = mind.plan.nodes[node].map;
         if mind.plan.nodes[child].skill.is_some() {
             let before = &mut self.before;
-            if let Some(a_star) = best.filter(|&a| mind.plan.can_act(a, before.state_type)) {
+            let state_type = before.state_type;
+            if let Some(a_star) = best.filter(|&a| mind.plan.can_act(a, state_type)) {
                 inside += mind.projected_value(before, a_star);
             }
-            let error_inside = self.discounts[1] * inside
-                - mind.completion(before, node, child, Completion::Inside);
-            let error_outside = self.discounts[1] * outside
-                - mind.completion(before, node, child, Completion::Outside);
-            let at = mind.plan.block(child, node, before.state_type);
-            let features = mind.encoder.encode(plan.map, &mut before.features);
-            if let Some(values) = &mut mind.values[node] {
-                let [first, second] = values.blocks(at, plan.vector, plan.stride);
-                linear::learn(first, features, alpha * error_inside);
-                linear::learn(second, features, alpha * error_outside);
-            }
-            observer.updated(Update {
-                node,
-                child,
-                state_type: before.state_type,
+            let features = mind.encoder.encode(map, &mut before.features);
+            let lesson = Lesson {
+                state_type,
+                features,
                 steps: 1,
-                error_inside,
-                error_outside,
-            });
+                discounts: &self.discounts[1..2],
+                targets: [inside, outside],
+                learning_rate: self.model.learning_rate as f32,
+            };
+            mind.study(node, child, lesson, observer);
         } else {
             let states = self.log.types.len();
-            for index in (frame.started..states).rev() {
-                let state_type = self.log.types[index];
-                let steps = states - index;
+            let mut end = states;
+            while end > started {
+                let state_type = self.log.types[end - 1];
+                let alike = self.log.types[started..end].iter().rev();
+                let mut begin = end - alike.take_while(|&&t| t == state_type).count();
                 let mut inside = inside;
-                if let Some(a_star) = best.filter(|&a| mind.plan.can_act(a, state_type))
-                    && let Some(percepts) = &self.log.percepts
-                {
-                    self.before.load(state_type, percepts[index].as_ref());
-                    inside += mind.projected_value(&mut self.before, a_star);
+                if let Some(a_star) = best {
+                    // The bootstrap value is another one in each state.
+                    begin = end - 1;
+                    if mind.plan.can_act(a_star, state_type)
+                        && let Some(percepts) = &self.log.percepts
+                    {
+                        self.before.load(state_type, percepts[begin].as_ref());
+                        inside += mind.projected_value(&mut self.before, a_star);
+                    }
                 }
-                let at = mind.plan.block(child, node, state_type);
-                let features = self.log.features(plan.map, index, plan.stride);
-                let Some(values) = &mut mind.values[node] else {
-                    continue;
-                };
-                let discount = self.discounts[steps];
-                let [first, second] = values.blocks(at, plan.vector, plan.stride);
-                let error_inside = discount * inside - linear::value(first, features);
-                let error_outside = discount * outside - linear::value(second, features);
-                linear::learn(first, features, alpha * error_inside);
-                linear::learn(second, features, alpha * error_outside);
-                observer.updated(Update {
-                    node,
-                    child,
+                let steps = states - end + 1;
+                let lesson = Lesson {
                     state_type,
+                    features: self.log.features(map, begin..end),
                     steps,
-                    error_inside,
-                    error_outside,
-                });
+                    discounts: &self.discounts[steps..=states - begin],
+                    targets: [inside, outside],
+                    learning_rate: self.model.learning_rate as f32,
+                };
+                mind.study(node, child, lesson, observer);
+                end = begin;
             }
         }
         self.now.forget(&self.mind.plan, child);
@@ -381,36 +384,83 @@ fn pseudo_reward(rule: PseudoReward, at_goal: bool, terminal: bool) -> f32 {
     if punished { -1.0 } else { 0.0 }
 }
 
-impl CompositeValues {
-    /// The block at an offset in C~, and the same block in C.
+/// What is to be learned in successive states of one type.
+struct Lesson<'a> {
+    state_type: StateType,
+    /// Of the composite subtask's map, the most recent state last.
+    features: &'a [f32],
+    /// N in the most recent state.
+    steps: usize,
+    /// gamma^N, the most recent state first.
+    discounts: &'a [f32],
+    /// What C~ and C are to be where N = 0.
+    targets: [f32; 2],
+    learning_rate: f32,
+}
+
+impl Mind<'_> {
+    /// Updates C~ and C of a composite node for a child.
     #[inline(always)]
-    fn blocks(&mut self, at: usize, vector: usize, stride: usize) -> [&mut [f32]; 2] {
-        let (first, second) = self.parameters[at..].split_at_mut(vector);
-        [&mut first[..stride], &mut second[..stride]]
+    fn study<W: World>(
+        &mut self,
+        node: usize,
+        child: usize,
+        lesson: Lesson<'_>,
+        observer: &mut impl Observer<W>,
+    ) {
+        let Some(values) = &mut self.values[node] else {
+            return;
+        };
+        let plan = &self.plan.nodes[node];
+        let at = self.plan.block(child, lesson.state_type);
+        let (first, second) = values.parameters[at..].split_at_mut(plan.vector);
+        let replay = Replay {
+            parameters: [&mut first[..plan.stride], &mut second[..plan.stride]],
+            features: lesson.features,
+            discounts: lesson.discounts,
+            targets: lesson.targets,
+            learning_rate: lesson.learning_rate,
+            watch: |recent, [error_inside, error_outside]: [f32; 2]| {
+                observer.updated(Update {
+                    node,
+                    child,
+                    state_type: lesson.state_type,
+                    steps: lesson.steps + recent,
+                    error_inside,
+                    error_outside,
+                });
+            },
+        };
+        replay.run();
     }
 }
 
 impl<P> Log<P> {
     fn new(plan: &Plan, model: &LearningModel) -> Self {
-        let mut maps: Vec<MapId> = Vec::new();
+        let mut features: Vec<LoggedFeatures> = Vec::new();
         for node in plan.nodes.iter().filter(|node| node.skill.is_none()) {
-            if let Some(parent) = node.parent
-                && !maps.contains(&plan.nodes[parent].map)
-            {
-                maps.push(plan.nodes[parent].map);
+            let Some(parent) = node.parent.map(|parent| &plan.nodes[parent]) else {
+                continue;
+            };
+            if features.iter().all(|logged| logged.map != parent.map) {
+                features.push(LoggedFeatures {
+                    map: parent.map,
+                    width: parent.stride,
+                    vectors: Vec::new(),
+                });
             }
         }
         Self {
             types: Vec::new(),
-            features: maps.into_iter().map(|map| (map, Vec::new())).collect(),
+            features,
             percepts: (model.completion_bootstrap == CompletionBootstrap::AsPrinted).then(Vec::new),
         }
     }
 
     fn clear(&mut self) {
         self.types.clear();
-        for (_, features) in &mut self.features {
-            features.clear();
+        for logged in &mut self.features {
+            logged.vectors.clear();
         }
         if let Some(percepts) = &mut self.percepts {
             percepts.clear();
@@ -420,14 +470,18 @@ impl<P> Log<P> {
     #[inline]
     fn push(&mut self, encoder: &Encoder, now: &mut Situation) {
         self.types.push(now.state_type);
-        for (map, features) in &mut self.features {
-            features.extend_from_slice(encoder.encode(*map, &mut now.features));
+        for logged in &mut self.features {
+            let features = encoder.encode(logged.map, &mut now.features);
+            logged.vectors.extend_from_slice(features);
         }
     }
 
+    /// The feature vectors of some states, one after the other.
     #[inline(always)]
-    fn features(&self, map: MapId, index: usize, stride: usize) -> &[f32] {
-        let logged = self.features.iter().find(|(logged, _)| *logged == map);
-        logged.map_or(&[], |(_, features)| &features[index * stride..][..stride])
+    fn features(&self, map: MapId, states: Range<usize>) -> &[f32] {
+        let logged = self.features.iter().find(|logged| logged.map == map);
+        logged.map_or(&[], |logged| {
+            &logged.vectors[states.start * logged.width..states.end * logged.width]
+        })
     }
 }

@@ -5,7 +5,7 @@
 //! so that the compiler turns it into vector instructions, with results that are
 //! the same on every processor.
 
-/// Numbers computed at once.
+/// Numbers computed at once where there are many.
 pub(super) const LANES: usize = 16;
 
 /// Below this the exponential counts as its value here, about 1e-38.
@@ -31,7 +31,7 @@ const POLYNOMIAL: [f32; 6] = [
 /// Replaces every number by its exponential, to within two units in the last place
 /// between -87 and 88; arguments outside are moved to these bounds.
 #[inline(always)]
-pub(super) fn exponentials(numbers: &mut [f32; LANES]) {
+pub(super) fn exponentials<const N: usize>(numbers: &mut [f32; N]) {
     for number in numbers {
         let x = number.clamp(SMALLEST, LARGEST);
         let shifted = x * std::f32::consts::LOG2_E + ROUNDING;

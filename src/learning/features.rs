@@ -1,99 +1,84 @@
 //! Normalised Gaussian RBF features (Thesis Eq. 2.22).
 //!
 //! On a full grid with one width per axis the normalised features factorise into
-//! products of one-dimensional normalised features: five proximity sensors with two
-//! centres each need five exponentials, not 32. On one axis, with d the offset of
-//! the input from its nearest centre j, spacing h and width sigma,
-//!
-//! ```text
-//! exp(-(x - c_k)^2 / 2 sigma^2)  ~  r^(k - j) g(k - j),
-//! r = exp(d h / sigma^2),  g(m) = exp(-(m h)^2 / 2 sigma^2)
-//! ```
-//!
-//! up to a factor that normalisation removes: one exponential per axis.
+//! products of one-dimensional Gaussians: five proximity sensors with two centres
+//! each need ten exponentials, not 32. A map whose last axes are those of another
+//! map starts from its features.
+
+use pulp::{Arch, Simd, WithSimd};
 
 use super::exponential::{LANES, exponentials};
 use super::linear::padded;
-use crate::worlds::{Axis, Catalogue, MapId};
+use crate::worlds::{Catalogue, FeatureMap, MapId};
 
-/// An axis of a feature map, prepared.
-#[derive(Clone, Debug, PartialEq)]
-struct AxisTable {
-    axis: Axis,
-    /// Number of centres minus 1: the inverse of their spacing.
-    intervals: f32,
-    /// h / sigma^2.
-    slope: f32,
-    /// g(0), g(1), ...
-    decay: Vec<f32>,
-    /// Where the axis's features start among those of all axes.
-    offset: usize,
+/// One Gaussian along one axis.
+#[derive(Clone, Copy, Debug)]
+struct Gaussian {
+    input: usize,
+    centre: f32,
+    /// -1 / (2 sigma^2).
+    exponent: f32,
+}
+
+/// A feature map, prepared.
+#[derive(Clone, Debug)]
+struct Grid {
+    /// Padded number of features.
+    width: usize,
+    /// The map whose features the grid starts from, and their number.
+    base: Option<(MapId, usize)>,
+    /// The Gaussians along the remaining axes, the axis varying fastest first.
+    gaussians: Vec<Gaussian>,
+    /// Number of Gaussians along each of these axes.
+    axes: Vec<usize>,
 }
 
 /// Computes features from inputs.
 #[derive(Clone, Debug)]
 pub struct Encoder {
-    axes: Vec<AxisTable>,
-    /// For each map its axes, the first varying slowest.
-    maps: Vec<Vec<usize>>,
-    widths: Vec<usize>,
+    grids: Vec<Grid>,
 }
 
-/// The features of one state: each is computed when first asked for, and once.
+/// The features of one state: each map's are computed when first asked for, and once.
 #[derive(Clone, Debug)]
 pub struct Features {
     inputs: Vec<f32>,
-    along_axes: Vec<f32>,
-    axes_ready: u64,
+    /// Room for the Gaussians of one map, in whole lanes.
+    gaussians: Vec<f32>,
     maps: Vec<Vec<f32>>,
-    maps_ready: u64,
+    /// One bit a map.
+    ready: u64,
 }
 
 impl Encoder {
     /// Prepares the feature maps of a catalogue.
     #[must_use]
     pub fn new(catalogue: &Catalogue) -> Self {
-        let mut axes: Vec<AxisTable> = Vec::new();
-        let mut offset = 0;
-        let mut shared = |axis: &Axis| {
-            if let Some(known) = axes.iter().position(|table| table.axis == *axis) {
-                return known;
-            }
-            axes.push(AxisTable::new(*axis, offset));
-            offset += axis.centres;
-            axes.len() - 1
-        };
-        let maps = catalogue.maps.iter();
-        let maps = maps
-            .map(|map| map.axes.iter().map(&mut shared).collect())
-            .collect();
+        let maps = &catalogue.maps;
         Self {
-            axes,
-            maps,
-            widths: catalogue
-                .maps
-                .iter()
-                .map(|map| padded(map.width()))
-                .collect(),
+            grids: maps.iter().map(|map| Grid::new(map, maps)).collect(),
         }
     }
 
     /// Length of the feature vectors of a map, padded with zeros to whole lanes.
     #[must_use]
     pub fn width(&self, map: MapId) -> usize {
-        self.widths[map.index()]
+        self.grids[map.index()].width
     }
 
     /// Room for the features of a state.
     #[must_use]
     pub fn features(&self) -> Features {
-        let along_axes = self.axes.iter().map(|table| table.axis.centres).sum();
+        let gaussians = self.grids.iter().map(|grid| padded(grid.gaussians.len()));
         Features {
             inputs: Vec::new(),
-            along_axes: vec![0.0; along_axes],
-            axes_ready: 0,
-            maps: self.widths.iter().map(|&width| vec![0.0; width]).collect(),
-            maps_ready: 0,
+            gaussians: vec![0.0; gaussians.max().unwrap_or(0)],
+            maps: self
+                .grids
+                .iter()
+                .map(|grid| vec![0.0; grid.width])
+                .collect(),
+            ready: 0,
         }
     }
 
@@ -101,45 +86,30 @@ impl Encoder {
     #[inline]
     pub fn encode<'f>(&self, map: MapId, features: &'f mut Features) -> &'f [f32] {
         let bit = 1 << map.0;
-        if features.maps_ready & bit == 0 {
-            features.maps_ready |= bit;
+        if features.ready & bit == 0 {
+            features.ready |= bit;
             self.compute(map, features);
         }
         &features.maps[map.index()]
     }
 
     fn compute(&self, map: MapId, features: &mut Features) {
-        let axes = &self.maps[map.index()];
-        self.compute_axes(axes, features);
-        let out = &mut features.maps[map.index()];
-        out[0] = 1.0;
-        let mut width = 1;
-        for &axis in axes.iter().rev() {
-            let table = &self.axes[axis];
-            let factors = &features.along_axes[table.offset..][..table.axis.centres];
-            width = extend(out, width, factors);
+        let grid = &self.grids[map.index()];
+        if let Some((base, _)) = grid.base {
+            self.encode(base, features);
         }
-    }
-
-    /// Computes the features along those of the given axes that are not ready.
-    fn compute_axes(&self, axes: &[usize], features: &mut Features) {
-        for axes in axes.chunks(LANES) {
-            let mut ratios = [0.0; LANES];
-            let mut nearest = [0; LANES];
-            for ((&axis, ratio), nearest) in axes.iter().zip(&mut ratios).zip(&mut nearest) {
-                let table = &self.axes[axis];
-                (*nearest, *ratio) = table.locate(features.inputs[table.axis.input]);
-            }
-            exponentials(&mut ratios);
-            for ((&axis, ratio), nearest) in axes.iter().zip(ratios).zip(nearest) {
-                let table = &self.axes[axis];
-                if features.axes_ready & (1 << axis) == 0 {
-                    features.axes_ready |= 1 << axis;
-                    let out = &mut features.along_axes[table.offset..][..table.axis.centres];
-                    table.fill(out, nearest, ratio);
-                }
-            }
-        }
+        // Taken out, so that the base's features can be read beside it.
+        let mut out = std::mem::take(&mut features.maps[map.index()]);
+        Arch::new().dispatch(Compute {
+            grid,
+            inputs: &features.inputs,
+            base: grid
+                .base
+                .map(|(base, width)| &features.maps[base.index()][..width]),
+            gaussians: &mut features.gaussians,
+            out: &mut out,
+        });
+        features.maps[map.index()] = out;
     }
 }
 
@@ -149,75 +119,133 @@ impl Features {
     pub fn load(&mut self, inputs: &[f32]) {
         self.inputs.clear();
         self.inputs.extend_from_slice(inputs);
-        self.axes_ready = 0;
-        self.maps_ready = 0;
+        self.ready = 0;
     }
 }
 
-/// Multiplies the first `width` numbers by each factor, one block a factor, and
-/// returns the new width.
-#[inline(always)]
-fn extend(out: &mut [f32], width: usize, factors: &[f32]) -> usize {
-    let (base, rest) = out.split_at_mut(width);
-    for (block, factor) in rest.chunks_exact_mut(width).zip(&factors[1..]) {
-        for (product, value) in block.iter_mut().zip(&*base) {
-            *product = value * factor;
-        }
-    }
-    for value in base {
-        *value *= factors[0];
-    }
-    width * factors.len()
-}
-
-impl AxisTable {
-    fn new(axis: Axis, offset: usize) -> Self {
-        let spacing = 1.0 / (axis.centres - 1) as f64;
-        let variance = axis.sigma * axis.sigma;
-        let decay = |m| {
-            let distance = m as f64 * spacing;
-            libm::exp(-distance * distance / (2.0 * variance)) as f32
+impl Grid {
+    fn new(map: &FeatureMap, maps: &[FeatureMap]) -> Self {
+        let ends_in = |(_, other): &(usize, &FeatureMap)| {
+            other.axes.len() < map.axes.len() && map.axes.ends_with(&other.axes)
         };
+        let base = maps.iter().enumerate().filter(ends_in);
+        let base = base.max_by_key(|(_, other)| other.axes.len());
+        let own = map.axes.len() - base.map_or(0, |(_, other)| other.axes.len());
+        let own = map.axes[..own].iter().rev();
+        let gaussians = own.clone().flat_map(|axis| {
+            (0..axis.centres).map(|k| Gaussian {
+                input: axis.input,
+                centre: (k as f64 / (axis.centres - 1) as f64) as f32,
+                exponent: (-0.5 / (axis.sigma * axis.sigma)) as f32,
+            })
+        });
         Self {
-            axis,
-            intervals: (axis.centres - 1) as f32,
-            slope: (spacing / variance) as f32,
-            decay: (0..axis.centres).map(decay).collect(),
-            offset,
+            width: padded(map.width()),
+            base: base.map(|(index, other)| (MapId(index as u8), other.width())),
+            gaussians: gaussians.collect(),
+            axes: own.map(|axis| axis.centres).collect(),
+        }
+    }
+}
+
+/// Computes the features of one map.
+struct Compute<'a> {
+    grid: &'a Grid,
+    inputs: &'a [f32],
+    /// The features that the grid starts from.
+    base: Option<&'a [f32]>,
+    gaussians: &'a mut [f32],
+    out: &'a mut [f32],
+}
+
+impl WithSimd for Compute<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { grid, out, .. } = self;
+        grid.evaluate(self.inputs, self.gaussians);
+        grid.normalise(self.gaussians);
+        let Some((&centres, axes)) = grid.axes.split_first() else {
+            return;
+        };
+        let (first, mut rest) = self.gaussians.split_at(centres);
+        let mut width = centres;
+        if let Some(base) = self.base {
+            width *= base.len();
+            for (block, &factor) in out.chunks_exact_mut(base.len()).zip(first) {
+                scaled(simd, block, base, factor);
+            }
+        } else {
+            out[..centres].copy_from_slice(first);
+        }
+        for &centres in axes {
+            let (factors, others) = rest.split_at(centres);
+            extend(simd, out, width, factors);
+            width *= centres;
+            rest = others;
+        }
+    }
+}
+
+impl Grid {
+    /// The Gaussians of the inputs.
+    #[inline(always)]
+    fn evaluate(&self, inputs: &[f32], out: &mut [f32]) {
+        let lanes = out.as_chunks_mut::<LANES>().0.iter_mut();
+        for (gaussians, lanes) in self.gaussians.chunks(LANES).zip(lanes) {
+            for (gaussian, lane) in gaussians.iter().zip(&mut *lanes) {
+                let offset = inputs[gaussian.input] - gaussian.centre;
+                *lane = offset * offset * gaussian.exponent;
+            }
+            exponentials(lanes);
         }
     }
 
-    /// The nearest centre, and the logarithm of r.
+    /// Scales the first axis so that the products will add up to 1: one division
+    /// for all axes.
     #[inline(always)]
-    fn locate(&self, input: f32) -> (usize, f32) {
-        let position = input * self.intervals;
-        let nearest = ((position + 0.5) as usize).min(self.axis.centres - 1);
-        let offset = (position - nearest as f32) / self.intervals;
-        (nearest, offset * self.slope)
-    }
-
-    /// The normalised features, from r and the nearest centre.
-    #[inline(always)]
-    fn fill(&self, out: &mut [f32], nearest: usize, ratio: f32) {
-        let inverse = 1.0 / ratio;
-        let (below, above) = out.split_at_mut(nearest);
-        let mut sum = 0.0;
-        let mut power = 1.0;
-        for (feature, decay) in above.iter_mut().zip(&self.decay) {
-            *feature = power * decay;
-            sum += *feature;
-            power *= ratio;
-        }
-        let mut power = inverse;
-        for (feature, decay) in below.iter_mut().rev().zip(&self.decay[1..]) {
-            *feature = power * decay;
-            sum += *feature;
-            power *= inverse;
+    fn normalise(&self, gaussians: &mut [f32]) {
+        let mut rest = &*gaussians;
+        let mut sum = 1.0;
+        for &centres in &self.axes {
+            let (axis, others) = rest.split_at(centres);
+            sum *= axis.iter().sum::<f32>();
+            rest = others;
         }
         let scale = 1.0 / sum;
-        for feature in out {
-            *feature *= scale;
+        let first = self.axes.first().map_or(0, |&centres| centres);
+        for gaussian in &mut gaussians[..first] {
+            *gaussian *= scale;
         }
+    }
+}
+
+/// Multiplies the first `width` numbers by each factor, one block a factor.
+#[inline(always)]
+fn extend<S: Simd>(simd: S, out: &mut [f32], width: usize, factors: &[f32]) {
+    let (base, mut rest) = out.split_at_mut(width);
+    for &factor in &factors[1..] {
+        let (block, others) = rest.split_at_mut(width);
+        scaled(simd, block, base, factor);
+        rest = others;
+    }
+    for number in base {
+        *number *= factors[0];
+    }
+}
+
+/// `out = numbers * factor`, for vectors of the same length.
+#[inline(always)]
+fn scaled<S: Simd>(simd: S, out: &mut [f32], numbers: &[f32], factor: f32) {
+    let (out_vectors, out_rest) = S::as_mut_simd_f32s(out);
+    let (vectors, rest) = S::as_simd_f32s(numbers);
+    let splat = simd.splat_f32s(factor);
+    for (out, vector) in out_vectors.iter_mut().zip(vectors) {
+        *out = simd.mul_f32s(*vector, splat);
+    }
+    for (out, number) in out_rest.iter_mut().zip(rest) {
+        *out = number * factor;
     }
 }
 
@@ -225,6 +253,7 @@ impl AxisTable {
 mod tests {
     use super::*;
     use crate::scenario::{RbfWidth, Scenario, WorldModel};
+    use crate::worlds::Axis;
     use crate::worlds::World;
     use crate::worlds::foraging::{ForagingWorld, INPUTS};
     use proptest::prelude::*;

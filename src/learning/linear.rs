@@ -1,4 +1,10 @@
 //! The linear approximator: value = parameters . features (Thesis Eq. 2.20).
+//!
+//! The loops run on the widest vectors that the processor has, chosen at run time by
+//! `pulp`. Lane l of sixteen holds the sum over the features l, l + 16, ... and the
+//! lanes are added in a fixed tree, so the result is the same on every vector width.
+
+use pulp::{Arch, Simd, WithSimd};
 
 pub(super) use super::exponential::LANES;
 
@@ -8,44 +14,177 @@ pub(super) fn padded(width: usize) -> usize {
 }
 
 /// The value of a parameter vector for a feature vector of the same padded length.
-///
-/// Sums run over sixteen lanes and are added in a fixed tree, whatever vectors the
-/// processor has.
-#[inline(always)]
+#[inline]
 pub(super) fn value(parameters: &[f32], features: &[f32]) -> f32 {
-    let mut lanes = [0.0_f32; LANES];
-    let groups = parameters
-        .as_chunks::<LANES>()
-        .0
-        .iter()
-        .zip(features.as_chunks::<LANES>().0);
-    for (p, f) in groups {
-        for lane in 0..LANES {
-            lanes[lane] += p[lane] * f[lane];
+    Arch::new().dispatch(Value {
+        parameters,
+        features,
+    })
+}
+
+/// The values of several parameter vectors, one after the other.
+#[inline]
+pub(super) fn values(parameters: &[f32], features: &[f32], values: &mut [f32]) {
+    Arch::new().dispatch(Values {
+        parameters,
+        features,
+        values,
+    });
+}
+
+/// One gradient step: `parameters += step * features` (Thesis Eq. 2.19, 2.21).
+#[inline]
+pub(super) fn learn(parameters: &mut [f32], features: &[f32], step: f32) {
+    Arch::new().dispatch(Learn {
+        parameters,
+        features,
+        step,
+    });
+}
+
+struct Value<'a> {
+    parameters: &'a [f32],
+    features: &'a [f32],
+}
+
+impl WithSimd for Value<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f32 {
+        dot(simd, self.parameters, self.features)
+    }
+}
+
+struct Values<'a> {
+    parameters: &'a [f32],
+    features: &'a [f32],
+    values: &'a mut [f32],
+}
+
+impl WithSimd for Values<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let mut rest = self.parameters;
+        for value in self.values {
+            let (vector, others) = rest.split_at(self.features.len());
+            *value = dot(simd, vector, self.features);
+            rest = others;
         }
     }
-    let mut width = LANES / 2;
-    while width > 0 {
+}
+
+struct Learn<'a> {
+    parameters: &'a mut [f32],
+    features: &'a [f32],
+    step: f32,
+}
+
+impl WithSimd for Learn<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        add(simd, self.parameters, self.features, self.step);
+    }
+}
+
+/// Gradient steps on C~ and C of a child of a composite subtask, for states one
+/// before the other.
+pub(super) struct Replay<'a, F> {
+    /// The parameters of C~ and of C.
+    pub(super) parameters: [&'a mut [f32]; 2],
+    /// The features of the states, the most recent state last.
+    pub(super) features: &'a [f32],
+    /// The discount for each state, the most recent state first.
+    pub(super) discounts: &'a [f32],
+    /// What C~ and C are to be, not discounted.
+    pub(super) targets: [f32; 2],
+    pub(super) learning_rate: f32,
+    /// Is told how many states were more recent, and the errors of C~ and C.
+    pub(super) watch: F,
+}
+
+impl<F: FnMut(usize, [f32; 2])> Replay<'_, F> {
+    /// Learns from all states, the most recent first.
+    #[inline]
+    pub(super) fn run(self) {
+        Arch::new().dispatch(self);
+    }
+}
+
+impl<F: FnMut(usize, [f32; 2])> WithSimd for Replay<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let [inside, outside] = self.parameters;
+        let width = inside.len();
+        let mut rest = self.features;
+        for (recent, discount) in self.discounts.iter().enumerate() {
+            let (others, features) = rest.split_at(rest.len() - width);
+            rest = others;
+            let errors = [
+                discount * self.targets[0] - dot(simd, inside, features),
+                discount * self.targets[1] - dot(simd, outside, features),
+            ];
+            add(simd, inside, features, self.learning_rate * errors[0]);
+            add(simd, outside, features, self.learning_rate * errors[1]);
+            (self.watch)(recent, errors);
+        }
+    }
+}
+
+/// Registers that make up all lanes.
+#[inline(always)]
+fn registers<S: Simd>() -> usize {
+    LANES / S::F32_LANES
+}
+
+/// The scalar product of two vectors of the same padded length.
+#[inline(always)]
+fn dot<S: Simd>(simd: S, parameters: &[f32], features: &[f32]) -> f32 {
+    // Spelled out in registers: the compiler alone makes half-empty vectors of it.
+    let mut sums = [simd.splat_f32s(0.0); LANES];
+    let parameters = S::as_simd_f32s(parameters).0;
+    let features = S::as_simd_f32s(features).0;
+    let groups = parameters
+        .chunks_exact(registers::<S>())
+        .zip(features.chunks_exact(registers::<S>()));
+    for (parameters, features) in groups {
+        for ((sum, p), f) in sums.iter_mut().zip(parameters).zip(features) {
+            *sum = simd.add_f32s(*sum, simd.mul_f32s(*p, *f));
+        }
+    }
+    let mut width = registers::<S>();
+    while width > 1 {
+        width /= 2;
+        for register in 0..width {
+            sums[register] = simd.add_f32s(sums[register], sums[register + width]);
+        }
+    }
+    let mut lanes = [0.0; LANES];
+    let lanes = &mut lanes[..S::F32_LANES];
+    lanes.copy_from_slice(pulp::bytemuck::cast_slice(&sums[..1]));
+    let mut width = S::F32_LANES;
+    while width > 1 {
+        width /= 2;
         for lane in 0..width {
             lanes[lane] += lanes[lane + width];
         }
-        width /= 2;
     }
     lanes[0]
 }
 
-/// One gradient step: `parameters += step * features` (Thesis Eq. 2.19, 2.21).
+/// `parameters += step * features`, for vectors of the same padded length.
 #[inline(always)]
-pub(super) fn learn(parameters: &mut [f32], features: &[f32], step: f32) {
-    let groups = parameters
-        .as_chunks_mut::<LANES>()
-        .0
-        .iter_mut()
-        .zip(features.as_chunks::<LANES>().0);
-    for (p, f) in groups {
-        for lane in 0..LANES {
-            p[lane] += step * f[lane];
-        }
+fn add<S: Simd>(simd: S, parameters: &mut [f32], features: &[f32], step: f32) {
+    let step = simd.splat_f32s(step);
+    let parameters = S::as_mut_simd_f32s(parameters).0;
+    for (p, f) in parameters.iter_mut().zip(S::as_simd_f32s(features).0) {
+        *p = simd.add_f32s(*p, simd.mul_f32s(step, *f));
     }
 }
 

@@ -15,8 +15,6 @@ pub(super) struct PlanNode {
     pub(super) stride: usize,
     /// Padded length of one parameter vector: a block per active state type.
     pub(super) vector: usize,
-    /// The place among its parent's children.
-    pub(super) slot: usize,
     /// The place among the catalogue's primitives; `None` for a composite subtask.
     pub(super) skill: Option<usize>,
 }
@@ -27,6 +25,9 @@ pub(super) struct Plan {
     pub(super) nodes: Vec<PlanNode>,
     /// For each node and state type, the terminal one too, the end of its choices.
     ends: Vec<usize>,
+    /// For each node and state type, where the C~ of the node lies in its parent's
+    /// parameters.
+    blocks: Vec<usize>,
     /// The children that can act, one list after the other.
     children: Vec<usize>,
     types: usize,
@@ -39,6 +40,7 @@ impl Plan {
         let mut plan = Self {
             nodes: Vec::new(),
             ends: vec![0],
+            blocks: Vec::new(),
             children: Vec::new(),
             types,
         };
@@ -46,6 +48,7 @@ impl Plan {
             let subtask = catalogue.subtask(node.subtask);
             let stride = width(subtask.map);
             let siblings = node.parent.map(|parent| tree.children(parent));
+            let slot = siblings.map_or(0, |mut all| all.position(|s| s == index).unwrap_or(0));
             plan.nodes.push(PlanNode {
                 subtask: node.subtask,
                 map: subtask.map,
@@ -54,15 +57,18 @@ impl Plan {
                 parent: node.parent,
                 stride,
                 vector: subtask.active.len() * stride,
-                slot: siblings.map_or(0, |mut all| all.position(|s| s == index).unwrap_or(0)),
                 skill: catalogue.primitives().position(|p| p == node.subtask),
             });
+            let parent = plan.nodes[node.parent.unwrap_or(index)];
             for state_type in (0..types).map(|t| StateType(t as u8)) {
                 let acts = able[index].contains(state_type);
                 let choices = tree.children(index).filter(|_| acts);
                 plan.children
                     .extend(choices.filter(|&child| able[child].contains(state_type)));
                 plan.ends.push(plan.children.len());
+                let rank = parent.active.rank(state_type);
+                plan.blocks
+                    .push(2 * slot * parent.vector + rank * parent.stride);
             }
         }
         plan
@@ -87,8 +93,7 @@ impl Plan {
     /// Where the C~ of `child` lies in its parent's parameters for a state type; the
     /// C lies one parameter vector further on.
     #[inline(always)]
-    pub(super) fn block(&self, child: usize, parent: usize, state_type: StateType) -> usize {
-        let node = &self.nodes[parent];
-        2 * self.nodes[child].slot * node.vector + node.active.rank(state_type) * node.stride
+    pub(super) fn block(&self, child: usize, state_type: StateType) -> usize {
+        self.blocks[child * self.types + usize::from(state_type.0)]
     }
 }

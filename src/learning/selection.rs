@@ -2,9 +2,12 @@
 
 use rand::RngExt;
 
-use super::exponential::{LANES, exponentials};
+use super::exponential::exponentials;
 use crate::random::Stream;
 use crate::scenario::LearningModel;
+
+/// Few children, few actions: more lanes would mostly be empty.
+const LANES: usize = 8;
 
 /// Softmax selection that gives way to epsilon-greedy selection where the largest
 /// probability exceeds a limit.
@@ -31,26 +34,27 @@ impl Softmax {
     #[inline]
     pub fn choose(&self, values: &[f32], temperature: f32, rng: &mut Stream) -> usize {
         let draw = rng.random::<f32>();
-        if values.len() <= LANES {
-            let mut weights = [0.0; LANES];
-            let (sum, greedy) = boltzmann(values, temperature, &mut weights);
-            return self.pick(&weights[..values.len()], sum, greedy, draw);
+        if values.len() > LANES {
+            return self.pick(&mut in_lanes(values), values.len(), temperature, draw);
         }
-        let mut weights = vec![0.0; values.len()];
-        let (sum, greedy) = boltzmann(values, temperature, &mut weights);
-        self.pick(&weights, sum, greedy, draw)
+        let mut weights = [f32::NEG_INFINITY; LANES];
+        for (weight, value) in weights.iter_mut().zip(values) {
+            *weight = *value;
+        }
+        self.pick(&mut weights, values.len(), temperature, draw)
     }
 
     /// Writes the probability with which each of `values` is chosen.
     pub fn probabilities(&self, values: &[f32], temperature: f32, out: &mut [f32]) {
         let count = values.len() as f32;
-        let (sum, greedy) = boltzmann(values, temperature, out);
+        let mut weights = in_lanes(values);
+        let sum = boltzmann(&mut weights, temperature);
         if self.is_greedy(sum) {
             out.fill(self.epsilon / count);
-            out[greedy] += 1.0 - self.epsilon;
+            out[heaviest(&weights)] += 1.0 - self.epsilon;
         } else {
-            for probability in out {
-                *probability /= sum;
+            for (probability, weight) in out.iter_mut().zip(weights) {
+                *probability = weight / sum;
             }
         }
     }
@@ -60,24 +64,26 @@ impl Softmax {
         1.0 / sum > self.probability_limit
     }
 
+    /// Chooses one of the first `count` values in whole lanes.
     #[inline(always)]
-    fn pick(&self, weights: &[f32], sum: f32, greedy: usize, draw: f32) -> usize {
-        let last = weights.len() - 1;
+    fn pick(&self, values: &mut [f32], count: usize, temperature: f32, draw: f32) -> usize {
+        let sum = boltzmann(values, temperature);
+        let weights = values;
         if self.is_greedy(sum) {
             return if draw < self.epsilon {
-                uniform(draw / self.epsilon, weights.len())
+                uniform(draw / self.epsilon, count)
             } else {
-                greedy
+                heaviest(weights)
             };
         }
+        // Counted, not searched: no processor can predict where a search would end.
         let mut left = draw * sum;
-        for (index, weight) in weights.iter().enumerate() {
-            left -= weight;
-            if left < 0.0 {
-                return index;
-            }
+        let mut passed = 0;
+        for weight in weights {
+            left -= *weight;
+            passed += usize::from(left >= 0.0);
         }
-        last
+        passed.min(count - 1)
     }
 }
 
@@ -87,30 +93,38 @@ pub(super) fn uniform(draw: f32, count: usize) -> usize {
     ((draw * count as f32) as usize).min(count - 1)
 }
 
-/// Weights exp((value - largest) / temperature), their sum, and the index of the
-/// largest value, the first of equals.
+/// The values in whole lanes, the empty ones as unlikely as can be.
+fn in_lanes(values: &[f32]) -> Vec<f32> {
+    let mut lanes = values.to_vec();
+    lanes.resize(values.len().next_multiple_of(LANES), f32::NEG_INFINITY);
+    lanes
+}
+
+/// Replaces values in whole lanes by the weights exp((value - largest) / temperature)
+/// and returns their sum.
 #[inline(always)]
-fn boltzmann(values: &[f32], temperature: f32, weights: &mut [f32]) -> (f32, usize) {
-    let mut greedy = 0;
-    for (index, &value) in values.iter().enumerate() {
-        if value > values[greedy] {
-            greedy = index;
-        }
-    }
-    let (largest, coldness) = (values[greedy], 1.0 / temperature);
+fn boltzmann(values: &mut [f32], temperature: f32) -> f32 {
+    let values = values.as_chunks_mut::<LANES>().0;
+    let larger = |a: f32, &b: &f32| if b > a { b } else { a };
+    let largest = values.iter().flatten().fold(f32::NEG_INFINITY, larger);
+    let coldness = 1.0 / temperature;
     let mut sum = 0.0;
-    for (values, weights) in values.chunks(LANES).zip(weights.chunks_mut(LANES)) {
-        let mut lanes = [0.0; LANES];
-        for (lane, value) in lanes.iter_mut().zip(values) {
-            *lane = (value - largest) * coldness;
+    for lanes in values {
+        for value in &mut *lanes {
+            *value = (*value - largest) * coldness;
         }
-        exponentials(&mut lanes);
-        for ((weight, lane), _) in weights.iter_mut().zip(lanes).zip(values) {
-            *weight = lane;
-            sum += lane;
-        }
+        exponentials(lanes);
+        sum += lanes.iter().sum::<f32>();
     }
-    (sum, greedy)
+    sum
+}
+
+/// The place of the largest weight, which is 1, the first of equals.
+fn heaviest(weights: &[f32]) -> usize {
+    weights
+        .iter()
+        .position(|&weight| weight == 1.0)
+        .unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -113,11 +113,11 @@ impl Mind<'_> {
         values.state = now.state;
         let skill = &self.skills.all()[index];
         let features = self.encoder.encode(skill.map, &mut now.features);
-        values.best = f32::NEG_INFINITY;
-        for (value, vector) in values.actions.iter_mut().zip(skill.padded()) {
-            *value = linear::value(vector, features);
-            values.best = values.best.max(*value);
-        }
+        skill.evaluate(features, &mut values.actions);
+        values.best = values
+            .actions
+            .iter()
+            .fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
     }
 
     /// V(i, s) of a node, Algorithm 2.5 with Eq. 3.2: choose the child with C~, return
@@ -169,7 +169,7 @@ impl Mind<'_> {
             return cached.value;
         }
         let plan = &self.plan.nodes[node];
-        let offset = self.plan.block(child, node, now.state_type) + which as usize * plan.vector;
+        let offset = self.plan.block(child, now.state_type) + which as usize * plan.vector;
         let parameters = self.parameters(node);
         let features = self.encoder.encode(plan.map, &mut now.features);
         let value = linear::value(&parameters[offset..offset + plan.stride], features);

@@ -67,6 +67,11 @@ impl Skill {
         self.parameters.chunks_exact(padded(self.width))
     }
 
+    /// Q_prim of every action.
+    pub(super) fn evaluate(&self, features: &[f32], values: &mut [f32]) {
+        super::linear::values(&self.parameters, features, values);
+    }
+
     /// One gradient step on an action's value (Thesis Eq. 3.6).
     pub(super) fn learn(&mut self, action: usize, features: &[f32], step: f32) {
         let stride = features.len();

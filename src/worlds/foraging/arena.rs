@@ -23,16 +23,23 @@ pub struct Wall {
     pub span: Vector2<f64>,
     /// Length in millimetres.
     pub(super) length: f64,
+    /// The span over its squared length.
+    shares: Vector2<f64>,
 }
 
 impl Wall {
     /// The wall `[x1, y1, x2, y2]`.
     pub(super) fn new([x1, y1, x2, y2]: [f64; 4]) -> Self {
-        let span = Vector2::new(x2 - x1, y2 - y1);
+        Self::between(Point2::new(x1, y1), Point2::new(x2, y2))
+    }
+
+    fn between(start: Point2<f64>, end: Point2<f64>) -> Self {
+        let span = end - start;
         Self {
-            start: Point2::new(x1, y1),
+            start,
             span,
             length: span.norm(),
+            shares: span / span.norm_squared(),
         }
     }
 
@@ -44,7 +51,7 @@ impl Wall {
 
     /// The point of the wall that is nearest to `point`.
     pub(super) fn nearest(&self, point: Point2<f64>) -> Point2<f64> {
-        let along = (point - self.start).dot(&self.span) / (self.length * self.length);
+        let along = (point - self.start).dot(&self.shares);
         self.start + self.span * along.clamp(0.0, 1.0)
     }
 
@@ -65,12 +72,7 @@ impl Wall {
         if self.crosses(a, b) {
             return 0.0;
         }
-        let span = b - a;
-        let line = Self {
-            start: a,
-            span,
-            length: span.norm(),
-        };
+        let line = Self::between(a, b);
         let mut distance = (a - self.nearest(a))
             .norm()
             .min((b - self.nearest(b)).norm());
@@ -106,6 +108,7 @@ pub struct Arena {
     columns: usize,
     rows: usize,
     cell_side: f64,
+    cells_per_mm: f64,
     /// Indices of walls; the cells' lists one after the other.
     listed: Vec<u16>,
     /// For each cell the ends of its lists: touch, proximity, each target.
@@ -142,6 +145,7 @@ impl Arena {
             columns: (width / cell_side).ceil() as usize,
             rows: (height / cell_side).ceil() as usize,
             cell_side,
+            cells_per_mm: 1.0 / cell_side,
             listed: Vec::new(),
             list_ends: vec![0],
         };
@@ -190,8 +194,9 @@ impl Arena {
     }
 
     fn list(&self, position: Point2<f64>, list: usize) -> impl Iterator<Item = &Wall> + Clone {
-        let index =
-            |coordinate: f64, cells: usize| ((coordinate / self.cell_side) as usize).min(cells - 1);
+        let index = |coordinate: f64, cells: usize| {
+            ((coordinate * self.cells_per_mm) as usize).min(cells - 1)
+        };
         let cell = index(position.y, self.rows) * self.columns + index(position.x, self.columns);
         let at = cell * self.lists_per_cell() + list;
         let range = Range {

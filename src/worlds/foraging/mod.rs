@@ -38,6 +38,7 @@ mod arena;
 mod catalogue;
 mod motion;
 mod probes;
+mod rays;
 mod sensors;
 
 pub use arena::{Arena, Wall};

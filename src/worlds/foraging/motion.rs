@@ -77,9 +77,16 @@ pub(super) fn slide<'w>(
     walls: impl Iterator<Item = &'w Wall> + Clone,
 ) -> Point2<f64> {
     for _ in 0..MAX_CONTACTS {
+        let distance = motion.norm();
+        if distance == 0.0 {
+            break;
+        }
         let first = walls
             .clone()
-            .filter_map(|wall| contact(position, motion, radius, wall).map(|time| (time, wall)))
+            .filter_map(|wall| {
+                let time = contact(position, motion, distance, radius, wall);
+                time.map(|time| (time, wall))
+            })
             .min_by(|(a, _), (b, _)| a.total_cmp(b));
         let Some((time, wall)) = first else {
             return position + motion;
@@ -95,16 +102,25 @@ pub(super) fn slide<'w>(
     position
 }
 
-/// The share of `motion` after which the disc first touches `wall` and would enter it.
-fn contact(position: Point2<f64>, motion: Vector2<f64>, radius: f64, wall: &Wall) -> Option<f64> {
+/// The share of `motion`, of this length, after which the disc first touches `wall`
+/// and would enter it.
+#[inline(always)]
+fn contact(
+    position: Point2<f64>,
+    motion: Vector2<f64>,
+    length: f64,
+    radius: f64,
+    wall: &Wall,
+) -> Option<f64> {
     let offset = position - wall.nearest(position);
-    let distance = offset.norm();
-    let inward = motion.dot(&offset);
-    if distance <= radius + CONTACT_TOLERANCE_MM {
-        return (inward < -INWARD_TOLERANCE * motion.norm() * distance).then_some(0.0);
-    }
-    if distance > radius + motion.norm() {
+    let distance_squared = offset.norm_squared();
+    if distance_squared > square(radius + length) {
         return None;
+    }
+    if distance_squared <= square(radius + CONTACT_TOLERANCE_MM) {
+        let inward = motion.dot(&offset);
+        let tolerance = INWARD_TOLERANCE * length * distance_squared.sqrt();
+        return (inward < -tolerance).then_some(0.0);
     }
     // The disc touches the wall where its centre enters the wall's capsule.
     [
@@ -115,6 +131,10 @@ fn contact(position: Point2<f64>, motion: Vector2<f64>, radius: f64, wall: &Wall
     .into_iter()
     .flatten()
     .min_by(f64::total_cmp)
+}
+
+fn square(number: f64) -> f64 {
+    number * number
 }
 
 /// When a centre outside the band around the wall's line enters it beside the wall.

@@ -6,6 +6,7 @@ use rand::RngExt;
 use super::arena::Arena;
 use super::catalogue::PROXIMITY_SENSORS;
 use super::motion::rotate;
+use super::rays::Rays;
 use crate::random::Stream;
 use crate::scenario::SensorModel;
 
@@ -70,23 +71,8 @@ impl Sensors {
         heading: Vector2<f64>,
         rng: &mut Stream,
     ) -> [f32; PROXIMITY_SENSORS] {
-        let rays = self.rays.map(|ray| rotate(ray, heading));
-        let mut distances = [f64::INFINITY; PROXIMITY_SENSORS];
-        for wall in arena.near(position) {
-            let start = wall.start - position;
-            let to_line = start.perp(&wall.span);
-            for (ray, distance) in rays.iter().zip(&mut distances) {
-                // position + t ray = start + s span, solved by Cramer's rule.
-                let determinant = ray.perp(&wall.span);
-                let along = start.perp(ray) * determinant.signum();
-                if 0.0 <= along && along <= determinant.abs() {
-                    let t = to_line / determinant;
-                    if t >= 0.0 && t < *distance {
-                        *distance = t;
-                    }
-                }
-            }
-        }
+        let rays = Rays::new(self.rays.map(|ray| rotate(ray, heading)));
+        let distances = rays.cast(position, arena.near(position));
         let [low, high] = self.proximity_range;
         distances.map(|distance| {
             if distance.is_infinite() {
