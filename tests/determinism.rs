@@ -121,7 +121,7 @@ fn a_reader_slow_gone_or_missing_changes_nothing() {
     // A large population has more events than may wait for a reader.
     let mut scenario = short(&["evolution.trial_step_limit=20"]);
     let evolution = &mut scenario.evolution;
-    evolution.initial_population = evolution.initial_population.repeat(10);
+    evolution.initial_population = vec![evolution.initial_population.clone(); 10].concat();
     evolution.population_size = evolution.initial_population.len();
     let unread = record_when(&scenario, |_| {});
     let gone = record_when(&scenario, |run| {

@@ -6,19 +6,19 @@ use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use thiserror::Error;
 
-use super::checkpoint::{Checkpoint, CheckpointError, MAX_CHECKPOINT_BYTES};
+use super::checkpoint::{Checkpoint, MAX_CHECKPOINT_BYTES};
 use super::controls::Controls;
 use super::event::{EVENT_FORMAT, Ending, Event};
 use super::folder::{FolderError, Keep, RunFolder};
-use super::log::{Log, LogError, read_events};
+use super::log::{Log, read_events};
 use super::manifest::{Invocation, MANIFEST_FORMAT, Manifest};
 use super::outcome::{BestIndividual, Outcome};
-use super::recorder::{Message, QUEUE_CAPACITY, RecordError, Recorder};
-use super::worlds::{SetupError, WorldTask, with_world};
+use super::recorder::{Message, QUEUE_CAPACITY, Recorder};
+use super::run_error::RunError;
+use super::worlds::{WorldTask, with_world};
 use crate::evolution::{Evolution, Experiment, State, Workers};
-use crate::files::{ReadError, read_text, write_atomically};
+use crate::files::{read_text, write_atomically};
 use crate::learning::Stopped;
 use crate::scenario::{PrimitiveLearning, Scenario};
 use crate::worlds::World;
@@ -32,65 +32,6 @@ pub struct RunOptions {
     pub keep: Keep,
     /// Whether an existing run may be replaced.
     pub force: bool,
-}
-
-/// Why a run cannot begin, or had to end.
-#[derive(Debug, Error)]
-pub enum RunError {
-    /// The scenario cannot be made ready.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// The run folder cannot be used.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-    /// The checkpoint cannot be read.
-    #[error("{file}: {source}")]
-    Read {
-        /// The file.
-        file: String,
-        /// Why.
-        source: ReadError,
-    },
-    /// The checkpoint cannot be used.
-    #[error("{file}: {source}")]
-    Checkpoint {
-        /// The file.
-        file: String,
-        /// Why.
-        source: CheckpointError,
-    },
-    /// The event log cannot be used.
-    #[error("{file}: {source}")]
-    Log {
-        /// The file.
-        file: String,
-        /// Why.
-        source: LogError,
-    },
-    /// The run cannot be recorded.
-    #[error("{folder}: {source}")]
-    Record {
-        /// The run folder.
-        folder: String,
-        /// Why.
-        source: RecordError,
-    },
-    /// The limit of a resumed run is not above what it has lived.
-    #[error(
-        "--generations: found {found}; allowed: {lived} or more, the generations lived, up to 100000"
-    )]
-    Generations {
-        /// The limit asked for.
-        found: u64,
-        /// Generations lived.
-        lived: u64,
-    },
-    /// The operating system gives no threads.
-    #[error("cannot start threads: {0}")]
-    Threads(String),
-    /// A thread panicked: a defect of this program.
-    #[error("a thread of the run panicked; this is a defect of maxq-lab, please report it")]
-    Panicked,
 }
 
 /// A run under way.
