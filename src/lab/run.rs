@@ -108,10 +108,16 @@ pub fn resume(
     let folder = RunFolder::open(path)?;
     let mut manifest = RunFolder::read_manifest(path)?;
     let checkpoint = read_checkpoint(&folder.checkpoint())?;
-    let mut scenario = match &checkpoint {
-        Some(checkpoint) => checkpoint.scenario.clone(),
-        None => manifest.scenario.clone(),
-    };
+    if let Some(checkpoint) = &checkpoint {
+        checkpoint
+            .check_origin(&manifest.scenario, manifest.seed)
+            .map_err(|message| {
+                let path = folder.manifest().display().to_string();
+                FolderError::Manifest { path, message }
+            })?;
+    }
+    // The limit is that of run.json: a run that dies before its first checkpoint with a
+    // new limit must not forget it.
     if let Some(limit) = generations {
         let lived = checkpoint
             .as_ref()
@@ -122,10 +128,10 @@ pub fn resume(
                 lived,
             });
         }
-        scenario.evolution.generation_limit = limit;
+        manifest.scenario.evolution.generation_limit = limit;
     }
+    let scenario = manifest.scenario.clone();
     let workers = workers(&scenario, options)?;
-    manifest.scenario = scenario.clone();
     manifest.resumed.push(Invocation::now(workers.threads()));
     folder.write_manifest(&manifest)?;
     begin(Preparation {
@@ -386,11 +392,12 @@ impl<W: World> Work<W> {
                 };
                 self.fact(started, recorder)?;
                 show(0, 0);
-                let evolution = Evolution::begin(&self.experiment, workers, seed, controls.gate())?;
-                self.keep(&evolution, recorder)?;
-                evolution
+                Evolution::begin(&self.experiment, workers, seed, controls.gate())?
             }
         };
+        // A resumed run too: its limit may be new, and the process before may have died
+        // between saving this state and keeping it.
+        self.keep(&evolution, recorder)?;
         progress.note(evolution.state());
         while !evolution.is_over() {
             controls.gate().pass(0)?;
