@@ -7,7 +7,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::output::{self, Done, Failure, Format};
-use super::signals::Ended;
+use super::signals::Caught;
 use super::source::Source;
 use crate::evolution::{Experiment, Workers, read_tree};
 use crate::lab::{Evaluation, Protocol, WorldTask, evaluate, with_world};
@@ -72,7 +72,7 @@ pub(super) fn main(args: Args) -> Done {
     let scenario = args.source.load()?;
     let gate = Arc::new(Gate::default());
     let stopping = Arc::clone(&gate);
-    let ended = Ended::on_signal(move || stopping.stop())?;
+    let ended = Caught::now()?.then(move || stopping.stop())?;
     let format = args.format;
     let report = with_world(scenario, Task { args, gate })?;
     if let Some(code) = ended.exit_code() {

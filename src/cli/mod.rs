@@ -62,7 +62,11 @@ enum Command {
 /// Runs the program with the process's arguments.
 #[must_use]
 pub fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command,
+        Err(error) => return no_command(&error),
+    };
+    let done = match command {
         Command::Run(args) => run::main(args),
         Command::Resume(args) => resume::main(&args),
         Command::Evaluate(args) => evaluate::main(args),
@@ -82,4 +86,16 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Prints what clap has to say instead of a command: help and version as they are, an
+/// error with the control characters of the arguments that it quotes made visible.
+fn no_command(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() {
+        output::message(error.render().to_string().trim_end());
+    } else {
+        // Nothing can be done about a standard output that cannot be written.
+        let _ = error.print();
+    }
+    u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::output::{self, Done, Failure, Format};
-use super::signals::Ended;
+use super::signals::Caught;
 use super::source::Source;
 use crate::evolution::{Experiment, Workers};
 use crate::lab::{WorldTask, with_world};
@@ -67,7 +67,7 @@ pub(super) fn main(args: Args) -> Done {
     let scenario = args.source.load()?;
     let gate = Arc::new(Gate::default());
     let stopping = Arc::clone(&gate);
-    let ended = Ended::on_signal(move || stopping.stop())?;
+    let ended = Caught::now()?.then(move || stopping.stop())?;
     let format = args.format;
     let report = with_world(scenario, Task { args, gate })?;
     if let Some(code) = ended.exit_code() {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::output::Done;
 use super::run::{How, follow};
+use super::signals::Caught;
 use crate::lab::resume;
 
 /// Go on with a run that was stopped, or died.
@@ -25,6 +26,7 @@ pub(super) struct Args {
 
 /// Carries out the command.
 pub(super) fn main(args: &Args) -> Done {
+    let signals = Caught::now()?;
     let run = resume(&args.run_dir, args.generations, &args.how.options(false))?;
-    follow(run, &args.how)
+    follow(run, signals, &args.how)
 }

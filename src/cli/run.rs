@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use super::output::{self, Done, Format};
 use super::progress;
-use super::signals::Ended;
+use super::signals::Caught;
 use super::source::Source;
 use crate::hierarchy::{Glyphs, draw};
 use crate::lab::{Keep, Outcome, Run, RunOptions, start};
@@ -87,14 +87,16 @@ pub(super) fn main(args: Args) -> Done {
     let folder = args.out.unwrap_or_else(|| {
         PathBuf::from("runs").join(format!("{}-seed{}", scenario.name, args.seed))
     });
+    let signals = Caught::now()?;
     let run = start(scenario, args.seed, &folder, &args.how.options(args.force))?;
-    follow(run, &args.how)
+    follow(run, signals, &args.how)
 }
 
-/// Follows a run to its end and reports its result.
-pub(super) fn follow(run: Run, how: &How) -> Done {
+/// Follows a run to its end and reports its result. Signals were caught before the run
+/// began, so that none falls between.
+pub(super) fn follow(run: Run, signals: Caught, how: &How) -> Done {
     let controls = run.controls.clone();
-    let ended = Ended::on_signal(move || controls.stop())?;
+    let ended = signals.then(move || controls.stop())?;
     let evolution = &run.scenario.evolution;
     let (limit, population) = (evolution.generation_limit, evolution.population_size);
     progress::follow(&run.events, limit, population, !how.headless);

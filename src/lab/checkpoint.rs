@@ -231,6 +231,29 @@ impl Checkpoint {
         Ok(checkpoint)
     }
 
+    /// Whether the checkpoint was taken of a run of this scenario and seed. The
+    /// generation limit may have been changed since.
+    ///
+    /// # Errors
+    /// With the place of what differs, what was found and what is allowed.
+    pub fn check_origin(&self, scenario: &Scenario, seed: u64) -> Result<(), String> {
+        if seed != self.seed {
+            let allowed = self.seed;
+            return Err(format!(
+                "seed: found {seed}; allowed: {allowed}, as in checkpoint.json"
+            ));
+        }
+        let mut own = self.scenario.clone();
+        own.evolution.generation_limit = scenario.evolution.generation_limit;
+        if own != *scenario {
+            return Err(String::from(
+                "scenario: found another; allowed: that of checkpoint.json, but for the \
+                 generation_limit",
+            ));
+        }
+        Ok(())
+    }
+
     /// The state that the checkpoint holds, for the experiment of its scenario.
     ///
     /// # Errors

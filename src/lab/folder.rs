@@ -206,6 +206,12 @@ impl RunFolder {
         &self.path
     }
 
+    /// `run.json`.
+    #[must_use]
+    pub fn manifest(&self) -> PathBuf {
+        self.path.join("run.json")
+    }
+
     /// `checkpoint.json`.
     #[must_use]
     pub fn checkpoint(&self) -> PathBuf {
@@ -241,7 +247,7 @@ impl RunFolder {
     /// # Errors
     /// When the operating system refuses.
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), FolderError> {
-        let path = self.path.join("run.json");
+        let path = self.manifest();
         let written = serde_json::to_vec_pretty(manifest)
             .map_err(io::Error::from)
             .and_then(|bytes| write_atomically(&path, &bytes));
@@ -271,6 +277,8 @@ impl RunFolder {
         let mut json = serde_json::Deserializer::from_str(&text);
         let mut manifest: Manifest = serde_path_to_error::deserialize(&mut json)
             .map_err(|error| wrong(format!("at {}: {}", error.path(), error.inner())))?;
+        json.end()
+            .map_err(|error| wrong(format!("at the end of the file: {error}")))?;
         if manifest.format != MANIFEST_FORMAT {
             let found = manifest.format;
             return Err(wrong(format!(

@@ -11,6 +11,7 @@ mod manifest;
 mod outcome;
 mod recorder;
 mod run;
+mod run_error;
 mod worlds;
 
 pub use checkpoint::{Checkpoint, CheckpointError, LogPosition};
@@ -21,5 +22,6 @@ pub use folder::{FolderError, Keep, RunFolder};
 pub use log::{LogError, read_events};
 pub use manifest::{Invocation, Manifest};
 pub use outcome::{BestIndividual, Outcome};
-pub use run::{Run, RunError, RunOptions, resume, start};
+pub use run::{Run, RunOptions, resume, start};
+pub use run_error::RunError;
 pub use worlds::{SetupError, WorldTask, with_world};

@@ -6,19 +6,19 @@ use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use thiserror::Error;
 
-use super::checkpoint::{Checkpoint, CheckpointError, MAX_CHECKPOINT_BYTES};
+use super::checkpoint::{Checkpoint, MAX_CHECKPOINT_BYTES};
 use super::controls::Controls;
 use super::event::{EVENT_FORMAT, Ending, Event};
 use super::folder::{FolderError, Keep, RunFolder};
-use super::log::{Log, LogError, read_events};
+use super::log::{Log, read_events};
 use super::manifest::{Invocation, MANIFEST_FORMAT, Manifest};
 use super::outcome::{BestIndividual, Outcome};
-use super::recorder::{Message, QUEUE_CAPACITY, RecordError, Recorder};
-use super::worlds::{SetupError, WorldTask, with_world};
+use super::recorder::{Message, QUEUE_CAPACITY, Recorder};
+use super::run_error::RunError;
+use super::worlds::{WorldTask, with_world};
 use crate::evolution::{Evolution, Experiment, State, Workers};
-use crate::files::{ReadError, read_text, write_atomically};
+use crate::files::{read_text, write_atomically};
 use crate::learning::Stopped;
 use crate::scenario::{PrimitiveLearning, Scenario};
 use crate::worlds::World;
@@ -32,63 +32,6 @@ pub struct RunOptions {
     pub keep: Keep,
     /// Whether an existing run may be replaced.
     pub force: bool,
-}
-
-/// Why a run cannot begin, or had to end.
-#[derive(Debug, Error)]
-pub enum RunError {
-    /// The scenario cannot be made ready.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// The run folder cannot be used.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-    /// The checkpoint cannot be read.
-    #[error("{file}: {source}")]
-    Read {
-        /// The file.
-        file: String,
-        /// Why.
-        source: ReadError,
-    },
-    /// The checkpoint cannot be used.
-    #[error("{file}: {source}")]
-    Checkpoint {
-        /// The file.
-        file: String,
-        /// Why.
-        source: CheckpointError,
-    },
-    /// The event log cannot be used.
-    #[error("{file}: {source}")]
-    Log {
-        /// The file.
-        file: String,
-        /// Why.
-        source: LogError,
-    },
-    /// The run cannot be recorded.
-    #[error("{folder}: {source}")]
-    Record {
-        /// The run folder.
-        folder: String,
-        /// Why.
-        source: RecordError,
-    },
-    /// The limit of a resumed run is not above what it has lived.
-    #[error("--generations: found {found}; allowed: {lived} (the generations lived) to 100000")]
-    Generations {
-        /// The limit asked for.
-        found: u64,
-        /// Generations lived.
-        lived: u64,
-    },
-    /// The operating system gives no threads.
-    #[error("cannot start threads: {0}")]
-    Threads(String),
-    /// A thread panicked: a defect of this program.
-    #[error("a thread of the run panicked; this is a defect of maxq-lab, please report it")]
-    Panicked,
 }
 
 /// A run under way.
@@ -165,10 +108,16 @@ pub fn resume(
     let folder = RunFolder::open(path)?;
     let mut manifest = RunFolder::read_manifest(path)?;
     let checkpoint = read_checkpoint(&folder.checkpoint())?;
-    let mut scenario = match &checkpoint {
-        Some(checkpoint) => checkpoint.scenario.clone(),
-        None => manifest.scenario.clone(),
-    };
+    if let Some(checkpoint) = &checkpoint {
+        checkpoint
+            .check_origin(&manifest.scenario, manifest.seed)
+            .map_err(|message| {
+                let path = folder.manifest().display().to_string();
+                FolderError::Manifest { path, message }
+            })?;
+    }
+    // The limit is that of run.json: a run that dies before its first checkpoint with a
+    // new limit must not forget it.
     if let Some(limit) = generations {
         let lived = checkpoint
             .as_ref()
@@ -179,10 +128,10 @@ pub fn resume(
                 lived,
             });
         }
-        scenario.evolution.generation_limit = limit;
+        manifest.scenario.evolution.generation_limit = limit;
     }
+    let scenario = manifest.scenario.clone();
     let workers = workers(&scenario, options)?;
-    manifest.scenario = scenario.clone();
     manifest.resumed.push(Invocation::now(workers.threads()));
     folder.write_manifest(&manifest)?;
     begin(Preparation {
@@ -443,11 +392,12 @@ impl<W: World> Work<W> {
                 };
                 self.fact(started, recorder)?;
                 show(0, 0);
-                let evolution = Evolution::begin(&self.experiment, workers, seed, controls.gate())?;
-                self.keep(&evolution, recorder)?;
-                evolution
+                Evolution::begin(&self.experiment, workers, seed, controls.gate())?
             }
         };
+        // A resumed run too: its limit may be new, and the process before may have died
+        // between saving this state and keeping it.
+        self.keep(&evolution, recorder)?;
         progress.note(evolution.state());
         while !evolution.is_over() {
             controls.gate().pass(0)?;

@@ -86,7 +86,8 @@ impl ScenarioError {
         error: &serde_path_to_error::Error<serde_json::Error>,
     ) -> Self {
         let place = match error.path().to_string().as_str() {
-            "." => String::from("the top level"),
+            // `?` is a key that could not be read.
+            "." | "?" => String::from("the top level"),
             path => path.to_owned(),
         };
         Self::from_json(file, place, error.inner())

@@ -77,6 +77,8 @@ impl Scenario {
         }
         match EMBEDDED.iter().find(|embedded| embedded.name == name) {
             Some(embedded) => Self::parse(embedded.json, embedded.name),
+            // Not a regular file: a pipe can be read, a folder says why not.
+            None if path.exists() => Self::read(path),
             None => Err(ScenarioError::NotFound {
                 name: name.to_owned(),
             }),

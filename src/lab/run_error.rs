@@ -1,0 +1,67 @@
+//! What can go wrong with a run.
+
+use thiserror::Error;
+
+use super::checkpoint::CheckpointError;
+use super::folder::FolderError;
+use super::log::LogError;
+use super::recorder::RecordError;
+use super::worlds::SetupError;
+use crate::files::ReadError;
+
+/// Why a run cannot begin, or had to end.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The scenario cannot be made ready.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The run folder cannot be used.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// The checkpoint cannot be read.
+    #[error("{file}: {source}")]
+    Read {
+        /// The file.
+        file: String,
+        /// Why.
+        source: ReadError,
+    },
+    /// The checkpoint cannot be used.
+    #[error("{file}: {source}")]
+    Checkpoint {
+        /// The file.
+        file: String,
+        /// Why.
+        source: CheckpointError,
+    },
+    /// The event log cannot be used.
+    #[error("{file}: {source}")]
+    Log {
+        /// The file.
+        file: String,
+        /// Why.
+        source: LogError,
+    },
+    /// The run cannot be recorded.
+    #[error("{folder}: {source}")]
+    Record {
+        /// The run folder.
+        folder: String,
+        /// Why.
+        source: RecordError,
+    },
+    /// The limit of a resumed run is not above what it has lived.
+    #[error("--generations: found {found}; allowed: {lived} (the generations lived) to 100000")]
+    Generations {
+        /// The limit asked for.
+        found: u64,
+        /// Generations lived.
+        lived: u64,
+    },
+    /// The operating system gives no threads.
+    #[error("cannot start threads: {0}")]
+    Threads(String),
+    /// A thread panicked: a defect of this program.
+    #[error("a thread of the run panicked; this is a defect of maxq-lab, please report it")]
+    Panicked,
+}

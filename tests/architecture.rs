@@ -1,0 +1,189 @@
+//! The house: imports between the rooms of `src/` point one way, the terminal is known in
+//! `dashboard/` alone, files stay short, and nothing gives up instead of returning an error.
+//!
+//! Why it matters: the library must run without a terminal, evolution must be testable
+//! without files, and a room that names its visitors cannot be understood alone.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The rooms, each with its rank: a room may name rooms of higher ranks, and its own.
+/// `files` and `random` are tools that every room may use.
+const ROOMS: &[(&str, usize)] = &[
+    ("cli", 0),
+    ("dashboard", 1),
+    ("report", 1),
+    ("lab", 2),
+    ("evolution", 3),
+    ("learning", 4),
+    ("hierarchy", 5),
+    ("worlds", 6),
+    ("scenario", 7),
+    ("files", 8),
+    ("random", 8),
+];
+
+/// Files that belong to no room: they say what the rooms are.
+const DOORS: &[&str] = &["main.rs", "lib.rs", "build.rs"];
+
+const LONGEST_FILE: usize = 500;
+
+struct Source {
+    /// Path below `src/`.
+    path: PathBuf,
+    lines: Vec<String>,
+}
+
+impl Source {
+    fn read(path: &Path, root: &Path) -> Self {
+        let text = fs::read_to_string(path).unwrap();
+        Self {
+            path: path.strip_prefix(root).unwrap().to_owned(),
+            lines: text.lines().map(str::to_owned).collect(),
+        }
+    }
+
+    /// The room: the first folder, or the file itself.
+    fn room(&self) -> String {
+        let first = self.path.components().next().unwrap();
+        Path::new(&first)
+            .file_stem()
+            .unwrap()
+            .to_string_lossy()
+            .into_owned()
+    }
+
+    fn is_door(&self) -> bool {
+        DOORS.iter().any(|door| self.path == Path::new(door))
+    }
+
+    /// Lines of code with their numbers, comments left out.
+    fn code(&self) -> impl Iterator<Item = (usize, &str)> {
+        let numbered = self.lines.iter().enumerate();
+        numbered
+            .map(|(index, line)| (index + 1, line.split("//").next().unwrap_or_default()))
+            .filter(|(_, code)| !code.trim().is_empty())
+    }
+
+    /// The code before the test module, which stands at the end of a file.
+    fn code_without_tests(&self) -> impl Iterator<Item = (usize, &str)> {
+        self.code()
+            .take_while(|(_, code)| code.trim() != "#[cfg(test)]")
+    }
+}
+
+fn sources() -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut folders = vec![root.clone()];
+    let mut sources = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                sources.push(Source::read(&path, &root));
+            }
+        }
+    }
+    assert!(sources.len() > 50, "the sources were not found");
+    sources
+}
+
+/// Names that follow `crate::` in a line.
+fn rooms_named(code: &str) -> impl Iterator<Item = &str> {
+    code.split("crate::").skip(1).map(|rest| {
+        let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_');
+        &rest[..end.unwrap_or(rest.len())]
+    })
+}
+
+fn rank(room: &str) -> Option<usize> {
+    ROOMS
+        .iter()
+        .find(|(name, _)| *name == room)
+        .map(|(_, rank)| *rank)
+}
+
+#[test]
+fn imports_point_one_way() {
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| !source.is_door()) {
+        let room = source.room();
+        let own = rank(&room).unwrap_or_else(|| panic!("src/{room} is no room of the house"));
+        for (number, code) in source.code() {
+            for named in rooms_named(code) {
+                let allowed = named == room || rank(named).is_some_and(|rank| rank > own);
+                if !allowed {
+                    wrong.push(format!(
+                        "{}:{number}: {room} names {named:?}",
+                        source.path.display()
+                    ));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_check_of_imports_sees_what_it_should() {
+    let named = |code| rooms_named(code).collect::<Vec<_>>();
+    assert_eq!(named("use crate::lab::{Event, Run};"), ["lab"]);
+    assert_eq!(
+        named("fn f(a: crate::cli::A, b: crate::files::B)"),
+        ["cli", "files"]
+    );
+    // A list of rooms is not understood, so it is not allowed: it names the room "".
+    assert_eq!(named("use crate::{cli, lab};"), [""]);
+    assert_eq!(rank(""), None);
+}
+
+#[test]
+fn only_the_dashboard_knows_the_terminal() {
+    for source in sources()
+        .iter()
+        .filter(|source| source.room() != "dashboard")
+    {
+        for (number, code) in source.code() {
+            let known = code.contains("ratatui") || code.contains("crossterm");
+            assert!(!known, "{}:{number}: {code}", source.path.display());
+        }
+    }
+}
+
+#[test]
+fn nothing_is_unsafe_and_nothing_gives_up() {
+    for source in sources() {
+        for (number, code) in source.code() {
+            let words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
+            let is_unsafe = words.into_iter().any(|word| word == "unsafe");
+            assert!(!is_unsafe, "{}:{number}: {code}", source.path.display());
+        }
+        for (number, code) in source.code_without_tests() {
+            for giving_up in [
+                ".unwrap()",
+                ".expect(",
+                "panic!(",
+                "todo!(",
+                "unimplemented!(",
+            ] {
+                let found = code.contains(giving_up);
+                assert!(!found, "{}:{number}: {code}", source.path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn files_are_short() {
+    for source in sources() {
+        let (path, length) = (source.path.display(), source.lines.len());
+        assert!(
+            length <= LONGEST_FILE,
+            "src/{path} has {length} lines; allowed: {LONGEST_FILE}"
+        );
+    }
+}

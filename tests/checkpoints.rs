@@ -1,0 +1,112 @@
+//! Contract 3: loading a checkpoint and saving it again gives the same bytes, and every
+//! checkpoint that was kept can be gone on from.
+//!
+//! Why it matters: a number that comes back from the disk one bit off, or a field that
+//! is forgotten, makes a resumed run another run, and nobody would notice.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod common;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::{Record, assert_same_bytes, run_in, short, smoke, threads};
+use maxq_lab::evolution::Experiment;
+use maxq_lab::lab::{Checkpoint, WorldTask, resume, with_world};
+use maxq_lab::scenario::Scenario;
+use maxq_lab::worlds::World;
+use proptest::prelude::*;
+
+/// Loads a checkpoint, rebuilds its state, and saves both again.
+fn assert_round_trip(bytes: &[u8], what: &str) {
+    let text = std::str::from_utf8(bytes).unwrap();
+    let loaded = Checkpoint::from_text(text).unwrap();
+    assert_same_bytes(&loaded.to_bytes().unwrap(), bytes, what);
+    let rebuilt = with_world(loaded.scenario.clone(), Rebuilt(&loaded)).unwrap();
+    assert_same_bytes(&rebuilt, bytes, &format!("{what}, by its state"));
+}
+
+/// The bytes of a checkpoint of a checkpoint's state.
+struct Rebuilt<'c>(&'c Checkpoint);
+
+impl WorldTask for Rebuilt<'_> {
+    type Output = Vec<u8>;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Vec<u8> {
+        let state = self.0.state(&experiment).unwrap();
+        let again = Checkpoint::of(&experiment, self.0.seed, &state, self.0.events);
+        again.unwrap().to_bytes().unwrap()
+    }
+}
+
+/// The kept checkpoints of a run, in order.
+fn kept(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder.join("generations")).unwrap();
+    let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
+}
+
+#[test]
+fn smoke_is_saved_as_it_was_loaded() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("run");
+    let outcome = run_in(&folder, &smoke(&[]), 1, &threads(2));
+    assert_round_trip(&Record::of(&folder).checkpoint, "smoke");
+    let kept = kept(&folder);
+    assert_eq!(kept.len() as u64, outcome.generations);
+    for path in kept {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        assert_round_trip(&fs::read(&path).unwrap(), &name);
+    }
+}
+
+#[test]
+fn every_kept_checkpoint_leads_to_the_same_end() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("run");
+    run_in(&folder, &short(&[]), 1, &threads(2));
+    let never_left = Record::of(&folder);
+    let kept = kept(&folder);
+    assert!(kept.len() > 1);
+    for path in kept {
+        let back = fs::read(&path).unwrap();
+        fs::write(folder.join("checkpoint.json"), back).unwrap();
+        resume(&folder, None, &threads(2)).unwrap().join().unwrap();
+        let from = format!("from {}", path.file_name().unwrap().display());
+        Record::of(&folder).assert_same(&never_left, &from);
+    }
+}
+
+#[test]
+fn what_comes_back_from_the_disk_is_what_was_saved() {
+    let saved = common::record(&short(&[]), 3, &threads(2)).checkpoint;
+    let text = String::from_utf8(saved).unwrap();
+    let once = Checkpoint::from_text(&text).unwrap();
+    let twice = String::from_utf8(once.to_bytes().unwrap()).unwrap();
+    assert!(Checkpoint::from_text(&twice).unwrap() == once);
+    assert_eq!((once.seed, once.scenario.clone()), (3, short(&[])));
+}
+
+proptest! {
+    // Each case is a run.
+    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_run_is_saved_as_it_was_loaded(
+        seed: u64,
+        generations in 1_u64..5,
+        shared: bool,
+        initial in -1000.0..1000.0_f64,
+    ) {
+        let learning = if shared { "shared" } else { "frozen" };
+        let scenario: Scenario = short(&[
+            &format!("evolution.generation_limit={generations}"),
+            &format!("learning.primitive_learning={learning}"),
+            &format!("learning.initial_parameter={initial}"),
+        ]);
+        let record = common::record(&scenario, seed, &threads(2));
+        assert_round_trip(&record.checkpoint, "a run");
+    }
+}

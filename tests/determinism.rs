@@ -1,0 +1,179 @@
+//! Contract 1: the same scenario and seed give the same events and the same checkpoint,
+//! bit for bit, for any number of threads, paused or not, watched or not; and every
+//! switch of a scenario that should matter does.
+//!
+//! Why it matters: a result that depends on the machine's mood cannot be checked by
+//! anybody, an interrupted run could not be continued, and watching an experiment would
+//! change it.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod common;
+
+use std::time::Duration;
+
+use common::{Record, record, short, smoke, threads, wait_until};
+use crossbeam_channel::never;
+use maxq_lab::lab::{Activity, Controls, Event, Run, RunOptions, read_events, start};
+use maxq_lab::random::{Purpose, stream};
+use maxq_lab::scenario::Scenario;
+use rand::RngExt;
+
+/// CRC-32 of `events.jsonl` of `smoke` with seed 1: the bits that everybody gets. It may
+/// change only with an intended change of the method or of its random streams.
+const GOLDEN: u32 = 0x57d8_0b6b;
+
+/// The record of a run that is treated in some way before its end is waited for.
+fn record_when(scenario: &Scenario, treated: impl FnOnce(&mut Run)) -> Record {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("run");
+    let mut run = start(scenario.clone(), 1, &folder, &threads(2)).unwrap();
+    treated(&mut run);
+    run.join().unwrap();
+    Record::of(&folder)
+}
+
+#[test]
+fn the_bits_are_those_that_everybody_gets() {
+    let found = crc32fast::hash(&record(&smoke(&[]), 1, &threads(2)).events);
+    assert!(
+        found == GOLDEN,
+        "events.jsonl of smoke, seed 1, has CRC-32 {found:#010x}, not {GOLDEN:#010x}; if the \
+         method or its random streams were changed on purpose, record the new number in GOLDEN"
+    );
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    for seed in [1, u64::MAX] {
+        let one = record(&short(&[]), seed, &threads(1));
+        for count in [2, 8] {
+            let other = record(&short(&[]), seed, &threads(count));
+            one.assert_same(&other, &format!("1 and {count} threads, seed {seed}"));
+        }
+    }
+}
+
+#[test]
+fn different_seeds_give_different_runs() {
+    let [one, other] = [1, 2].map(|seed| record(&short(&[]), seed, &threads(2)));
+    let generations = |record: &Record| {
+        let text = String::from_utf8(record.events.clone()).unwrap();
+        text.split_once('\n').unwrap().1.to_owned()
+    };
+    assert_ne!(generations(&one), generations(&other));
+}
+
+#[test]
+fn pausing_and_stepping_at_random_moments_changes_nothing() {
+    let undisturbed = record(&short(&[]), 1, &threads(2));
+    for round in 0..5 {
+        let disturbed = record_when(&short(&[]), |run| disturb(run, round));
+        disturbed.assert_same(&undisturbed, &format!("paused at random, round {round}"));
+    }
+}
+
+/// Pauses, steps and resumes until the run is over. It is paused at once, so that it
+/// cannot end before anything was done to it.
+fn disturb(run: &mut Run, round: u64) {
+    let mut rng = stream(round, 0, 0, Purpose::Life);
+    run.controls.pause();
+    let commands: [fn(&Controls); 4] = [
+        Controls::pause,
+        Controls::step,
+        Controls::resume,
+        Controls::checkpoint,
+    ];
+    for _ in 0..60 {
+        commands[rng.random_range(0..commands.len())](&run.controls);
+        // The moment is random; nothing is waited for.
+        std::thread::sleep(Duration::from_micros(rng.random_range(0..800)));
+    }
+    run.controls.resume();
+    let events: Vec<_> = run.events.iter().collect();
+    assert!(events.contains(&Event::Paused) && events.contains(&Event::Resumed));
+}
+
+#[test]
+fn a_step_is_one_generation_and_a_paused_run_computes_nothing() {
+    let undisturbed = record(&short(&[]), 1, &threads(2));
+    let stepped = record_when(&short(&[]), |run| {
+        run.controls.pause();
+        for _ in 0..3 {
+            run.controls.step();
+            wait_until("the end of the step", || {
+                run.controls.activity() == Activity::Paused
+            });
+        }
+        let told: Vec<_> = run.events.try_iter().collect();
+        let is_generation = |event: &&Event| matches!(event, Event::Generation(_));
+        assert_eq!(told.iter().filter(is_generation).count(), 3);
+        let steps = run.controls.control_steps();
+        std::thread::sleep(Duration::from_millis(20));
+        assert_eq!(run.controls.control_steps(), steps, "a paused run computes");
+        run.controls.resume();
+    });
+    stepped.assert_same(&undisturbed, "stepped");
+}
+
+#[test]
+fn a_reader_slow_gone_or_missing_changes_nothing() {
+    // A large population has more events than may wait for a reader.
+    let mut scenario = short(&["evolution.trial_step_limit=20"]);
+    let evolution = &mut scenario.evolution;
+    evolution.initial_population = vec![evolution.initial_population.clone(); 10].concat();
+    evolution.population_size = evolution.initial_population.len();
+    let unread = record_when(&scenario, |_| {});
+    let gone = record_when(&scenario, |run| {
+        run.events.recv().unwrap();
+        run.events = never();
+    });
+    gone.assert_same(&unread, "a reader that went away");
+    let slow = record_when(&scenario, |run| {
+        // The run goes on to its end although nobody takes its events.
+        let log = run.folder.join("events.jsonl");
+        let complete = unread.events.iter().filter(|&&byte| byte == b'\n').count();
+        wait_until("the end of the run", || common::lines(&log) == complete);
+        let told: Vec<_> = run.events.iter().collect();
+        assert!(
+            told.len() > 256,
+            "the scenario has too few events for this test"
+        );
+        let recorded: Vec<_> = told.into_iter().filter(Event::is_recorded).collect();
+        assert_eq!(recorded, read_events(&log).unwrap());
+    });
+    slow.assert_same(&unread, "a slow reader");
+}
+
+#[test]
+fn what_is_kept_changes_nothing() {
+    let all = record(&short(&[]), 1, &threads(2));
+    let none = RunOptions {
+        keep: "none".parse().unwrap(),
+        ..threads(2)
+    };
+    record(&short(&[]), 1, &none).assert_same(&all, "nothing kept");
+}
+
+#[test]
+fn every_switch_is_deterministic_and_matters() {
+    // Quick cooling, so that when it happens matters in a short run.
+    const COOLING: &str = "learning.temperature_decrease=0.7";
+    let default = record(&short(&[COOLING]), 1, &threads(2));
+    for switch in [
+        "learning.primitive_learning=shared",
+        "learning.composite_choice=random",
+        "learning.completion_bootstrap=as_printed",
+        "learning.cool_on=goal",
+        "learning.pseudo_reward=all",
+        "evolution.selection=random",
+        "evolution.inheritance=darwinian",
+        "world.foraging.features.rbf_width=variance",
+    ] {
+        let scenario = short(&[COOLING, switch]);
+        let one = record(&scenario, 1, &threads(1));
+        let two = record(&scenario, 1, &threads(2));
+        one.assert_same(&two, switch);
+        assert!(one.events != default.events, "{switch} has no effect");
+    }
+}

@@ -1,0 +1,281 @@
+//! Contract 2: a run stopped anywhere, by `kill -9` too, and resumed equals the run that
+//! was never stopped: the same events, the same checkpoint, the same kept generations.
+//!
+//! Why it matters: runs take hours, and machines are switched off. A run that cannot be
+//! trusted after an interruption has to be thrown away.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod common;
+
+use std::fs::{self, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant, SystemTime};
+
+use common::{
+    Record, lines, output, program, run_in, set, short, smoke, stderr, stop_after, threads,
+    wait_until,
+};
+use maxq_lab::lab::{Checkpoint, Outcome, resume, start};
+use maxq_lab::random::{Purpose, stream};
+use rand::RngExt;
+use tempfile::TempDir;
+
+/// Settings that make `smoke` run for about a second: a population in which chance, not
+/// fitness, decides does not converge for long.
+const LONGER: &[&str] = &[
+    "evolution.selection=random",
+    "evolution.trial_step_limit=500",
+    "evolution.population_size=16",
+    concat!(
+        r#"evolution.initial_population=["(Root Wander ApproachBattery ApproachNest)","#,
+        r#""(Root Avoid ApproachBattery ApproachNest Turn)","#,
+        r#""(Root Wander Turn ApproachBattery ApproachNest)","#,
+        r#""(Root (Capture Wander ApproachBattery) Avoid ApproachNest)","#,
+        r#""(Root (Deliver Wander ApproachNest) Avoid ApproachBattery)","#,
+        r#""(Root (FindBattery Wander) (FindNest Avoid) ApproachBattery ApproachNest)","#,
+        r#""(Root Wander (VisibleBattery ApproachBattery Avoid) ApproachNest)","#,
+        r#""(Root Avoid (VisibleBattery ApproachBattery Turn) ApproachNest)","#,
+        r#""(Root Wander (VisibleNest ApproachNest Turn) ApproachBattery)","#,
+        r#""(Root Avoid Wander ApproachBattery ApproachNest Turn)","#,
+        r#""(Root (FindNest Wander) Avoid ApproachBattery ApproachNest)","#,
+        r#""(Root (Capture Avoid ApproachBattery) (Deliver Wander ApproachNest))","#,
+        r#""(Root Wander Wander ApproachBattery ApproachNest)","#,
+        r#""(Root Avoid Avoid ApproachBattery ApproachNest)","#,
+        r#""(Root (FindBattery Avoid) Wander ApproachBattery ApproachNest)","#,
+        r#""(Root (FindBattery Avoid Wander) Turn Wander ApproachBattery ApproachNest)"]"#,
+    ),
+];
+
+/// Moments at which a run is killed.
+const KILLS: usize = 20;
+
+fn run_command(folder: &Path, settings: &[&str]) -> Command {
+    let mut command = program();
+    command.args(["run", "smoke", "--headless", "--threads", "2", "--out"]);
+    command.arg(folder);
+    set(&mut command, settings);
+    command
+}
+
+fn resume_command(folder: &Path) -> Command {
+    let mut command = program();
+    command.args(["resume", "--headless", "--threads", "2"]);
+    command.arg(folder);
+    command
+}
+
+/// The command that goes on with a run; where there is none yet, the one that starts it.
+fn go_on(folder: &Path) -> Command {
+    match folder.exists() {
+        true => resume_command(folder),
+        false => run_command(folder, LONGER),
+    }
+}
+
+fn spawn(command: &mut Command) -> Child {
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().unwrap()
+}
+
+/// The kept generations, by name.
+fn kept(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let entries = fs::read_dir(folder.join("generations")).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let json = |path: &PathBuf| {
+        path.extension()
+            .is_some_and(|extension| extension == "json")
+    };
+    let mut kept: Vec<_> = paths
+        .filter(json)
+        .map(|path| (path.file_name().unwrap().into(), fs::read(&path).unwrap()))
+        .collect();
+    kept.sort();
+    kept
+}
+
+/// Kills a process at a moment after its start, unless it has ended by then.
+fn kill_after(child: &mut Child, moment: Duration) {
+    let begun = Instant::now();
+    while begun.elapsed() < moment && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_micros(300));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+#[test]
+fn killed_at_random_moments_and_resumed_is_never_killed() {
+    let parent = TempDir::new().unwrap();
+    let undisturbed = parent.path().join("undisturbed");
+    let begun = Instant::now();
+    let whole = output(&mut run_command(&undisturbed, LONGER));
+    let duration = begun.elapsed();
+    assert!(whole.status.success(), "{}", stderr(&whole));
+    let (expected, expected_kept) = (Record::of(&undisturbed), kept(&undisturbed));
+
+    let seed = SystemTime::UNIX_EPOCH.elapsed().unwrap().as_nanos() as u64;
+    let mut rng = stream(seed, 0, 0, Purpose::Life);
+    for kill in 0..KILLS {
+        let folder = parent.path().join(format!("killed-{kill}"));
+        // Spread over the whole life; every fourth in the first hundredth, the start-up.
+        let share: f64 = match kill % 4 {
+            0 => rng.random_range(0.0..0.01),
+            _ => (kill as f64 + rng.random_range(0.0..1.0)) / KILLS as f64,
+        };
+        let mut moments = vec![duration.mul_f64(share)];
+        // Some resumed runs are killed too, up to three times.
+        for _ in 0..kill % 4 {
+            moments.push(duration.mul_f64(rng.random_range(0.0..0.3)));
+        }
+        let when = format!("killed after {moments:?} (random seed {seed}, kill {kill})");
+        for &moment in &moments {
+            kill_after(&mut spawn(&mut go_on(&folder)), moment);
+        }
+        let last = output(&mut go_on(&folder));
+        assert!(last.status.success(), "{when}: {}", stderr(&last));
+        Record::of(&folder).assert_same(&expected, &when);
+        assert!(
+            kept(&folder) == expected_kept,
+            "{when}: generations/ differs"
+        );
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}
+
+#[test]
+fn a_signal_saves_a_checkpoint_and_the_run_can_go_on() {
+    let parent = TempDir::new().unwrap();
+    let undisturbed = parent.path().join("undisturbed");
+    run_in(&undisturbed, &smoke(LONGER), 1, &threads(2));
+    let expected = Record::of(&undisturbed);
+    for (signal, code) in [("TERM", 143), ("INT", 130), ("HUP", 129)] {
+        let folder = parent.path().join(signal);
+        let log = folder.join("events.jsonl");
+        let mut child = spawn(&mut run_command(&folder, LONGER));
+        wait_until("three generations", || lines(&log) > 3);
+        send(signal, &child);
+        assert_eq!(child.wait().unwrap().code(), Some(code), "SIG{signal}");
+        // The start and each generation are a line; the last one is in the checkpoint.
+        let text = fs::read_to_string(folder.join("checkpoint.json")).unwrap();
+        let saved = Checkpoint::from_text(&text).unwrap();
+        assert_eq!(saved.generation, lines(&log) as u64 - 1, "SIG{signal}");
+        assert!(!folder.join("summary.json").exists());
+        let resumed = output(&mut resume_command(&folder));
+        assert!(resumed.status.success(), "{}", stderr(&resumed));
+        Record::of(&folder).assert_same(&expected, &format!("after SIG{signal}"));
+    }
+}
+
+#[test]
+fn a_signal_is_heard_as_soon_as_there_is_a_run_folder() {
+    let parent = TempDir::new().unwrap();
+    for attempt in 0..5 {
+        let folder = parent.path().join(format!("run-{attempt}"));
+        let mut child = spawn(&mut run_command(&folder, LONGER));
+        wait_until("the run folder", || folder.exists());
+        send("TERM", &child);
+        assert_eq!(child.wait().unwrap().code(), Some(143));
+    }
+}
+
+fn send(signal: &str, to: &Child) {
+    let id = to.id().to_string();
+    let sent = Command::new("kill").args(["-s", signal, &id]).status();
+    assert!(sent.unwrap().success());
+}
+
+/// A run that never converges, stopped after its third generation; and what it would
+/// have come to.
+fn stopped(parent: &TempDir) -> (PathBuf, Record) {
+    let scenario = short(&["evolution.selection=random"]);
+    let expected = common::record(&scenario, 1, &threads(2));
+    let folder = parent.path().join("stopped");
+    let run = start(scenario, 1, &folder, &threads(2)).unwrap();
+    stop_after(run, 3);
+    (folder, expected)
+}
+
+fn resumed(folder: &Path, generations: Option<u64>) -> Outcome {
+    let run = resume(folder, generations, &threads(2)).unwrap();
+    run.join().unwrap()
+}
+
+#[test]
+fn what_was_written_after_the_checkpoint_is_dropped() {
+    let line = br#"{"event":"ended","generations":4,"ending":"converged"}"#;
+    let whole_line = [line.as_slice(), b"\n"].concat();
+    let tails: [(&str, &[u8]); 4] = [
+        ("a torn line", &line[..20]),
+        ("a line of another run", &whole_line),
+        ("garbage", b"\0\xff\xfe garbage \n\n{}\n"),
+        ("a torn line without any text", b"\xc3"),
+    ];
+    for (what, tail) in tails {
+        let parent = TempDir::new().unwrap();
+        let (folder, expected) = stopped(&parent);
+        let log = OpenOptions::new()
+            .append(true)
+            .open(folder.join("events.jsonl"));
+        log.unwrap().write_all(tail).unwrap();
+        resumed(&folder, None);
+        Record::of(&folder).assert_same(&expected, what);
+    }
+}
+
+#[test]
+fn without_a_checkpoint_the_run_begins_again() {
+    let parent = TempDir::new().unwrap();
+    let (folder, expected) = stopped(&parent);
+    fs::remove_file(folder.join("checkpoint.json")).unwrap();
+    resumed(&folder, None);
+    Record::of(&folder).assert_same(&expected, "without a checkpoint");
+}
+
+#[test]
+fn another_generation_limit_is_as_good_as_the_first() {
+    let with_limit = |limit: u64| {
+        let limit = format!("evolution.generation_limit={limit}");
+        short(&["evolution.selection=random", &limit])
+    };
+    let expected = common::record(&with_limit(7), 1, &threads(2));
+    let parent = TempDir::new().unwrap();
+
+    let longer = parent.path().join("longer");
+    run_in(&longer, &with_limit(3), 1, &threads(2));
+    assert_eq!(resumed(&longer, Some(7)).generations, 7);
+    Record::of(&longer).assert_same(&expected, "from limit 3 to limit 7");
+
+    let interrupted = parent.path().join("interrupted");
+    run_in(&interrupted, &with_limit(3), 1, &threads(2));
+    let run = resume(&interrupted, Some(7), &threads(2)).unwrap();
+    run.controls.stop();
+    run.join().unwrap();
+    assert_eq!(resumed(&interrupted, None).generations, 7);
+    Record::of(&interrupted).assert_same(&expected, "limit 7, stopped before a generation");
+
+    let shorter = parent.path().join("shorter");
+    let run = start(with_limit(1000), 1, &shorter, &threads(2)).unwrap();
+    let lived = stop_after(run, 2).generations;
+    assert_eq!(resumed(&shorter, Some(lived)).generations, lived);
+    let expected = common::record(&with_limit(lived), 1, &threads(2));
+    Record::of(&shorter).assert_same(&expected, "from limit 1000 to the generations lived");
+    assert_eq!(resumed(&shorter, None).generations, lived);
+}
+
+#[test]
+fn a_finished_run_stays_as_it_is() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("run");
+    let first = run_in(&folder, &short(&[]), 1, &threads(2));
+    let expected = Record::of(&folder);
+    let again = resumed(&folder, None);
+    let timeless = |outcome: Outcome| Outcome {
+        wall_seconds: 0.0,
+        ..outcome
+    };
+    assert_eq!(timeless(again), timeless(first));
+    Record::of(&folder).assert_same(&expected, "resumed when it was over");
+}
