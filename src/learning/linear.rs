@@ -6,7 +6,8 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-pub(super) use super::exponential::LANES;
+/// Sums run over this many lanes, whatever vectors the processor has.
+const LANES: usize = 16;
 
 /// `width` rounded up to whole groups of lanes; vectors are padded with zeros to it.
 pub(super) fn padded(width: usize) -> usize {
@@ -191,6 +192,7 @@ fn add<S: Simd>(simd: S, parameters: &mut [f32], features: &[f32], step: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pulp::Scalar;
 
     #[test]
     fn values_and_steps_agree_with_the_definition() {
@@ -201,6 +203,12 @@ mod tests {
             terms.map(|(&p, &f)| f64::from(p) * f64::from(f)).sum()
         };
         assert!((f64::from(value(&parameters, &features)) - exact(&parameters)).abs() < 1e-4);
+        let narrow = dot(Scalar, &parameters, &features);
+        assert_eq!(
+            value(&parameters, &features),
+            narrow,
+            "every vector width gives the same bits"
+        );
         let expected = exact(&parameters) + 0.5 * exact(&features);
         learn(&mut parameters, &features, 0.5);
         assert!((exact(&parameters) - expected).abs() < 1e-4);
