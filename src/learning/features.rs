@@ -162,9 +162,9 @@ impl Grid {
         grid
     }
 
-    /// Padded number of Gaussians.
+    /// Number of Gaussians, padded to whole vectors.
     fn gaussians(&self) -> usize {
-        padded(self.groups.iter().sum())
+        self.groups.iter().sum::<usize>().next_multiple_of(GROUP)
     }
 
     /// Adds the Gaussians of a group of axes.
@@ -208,7 +208,8 @@ impl WithSimd for Compute<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { grid, out, .. } = self;
         grid.evaluate(simd, self.inputs, self.gaussians);
-        grid.normalise(self.gaussians);
+        // One division normalises along all axes.
+        let scale = 1.0 / grid.sum(self.gaussians);
         let Some((&size, groups)) = grid.groups.split_first() else {
             return;
         };
@@ -217,10 +218,10 @@ impl WithSimd for Compute<'_> {
         if let Some(base) = self.base {
             width *= base.len();
             for (block, &factor) in out.chunks_exact_mut(base.len()).zip(first) {
-                scaled(simd, block, base, factor);
+                scaled(simd, block, base, factor * scale);
             }
         } else {
-            out[..size].copy_from_slice(first);
+            scaled(simd, &mut out[..size], first, scale);
         }
         for &size in groups {
             let (factors, others) = rest.split_at(size);
@@ -251,22 +252,17 @@ impl Grid {
         }
     }
 
-    /// Scales the first group so that the products will add up to 1: one division
-    /// for all groups.
+    /// The sum of all products of one Gaussian of each group.
     #[inline(always)]
-    fn normalise(&self, gaussians: &mut [f32]) {
-        let mut rest = &*gaussians;
-        let mut sum = 1.0;
+    fn sum(&self, gaussians: &[f32]) -> f32 {
+        let mut rest = gaussians;
+        let mut product = 1.0;
         for &size in &self.groups {
             let (group, others) = rest.split_at(size);
-            sum *= group.iter().sum::<f32>();
+            product *= group.iter().sum::<f32>();
             rest = others;
         }
-        let scale = 1.0 / sum;
-        let first = self.groups.first().map_or(0, |&size| size);
-        for gaussian in &mut gaussians[..first] {
-            *gaussian *= scale;
-        }
+        product
     }
 }
 
