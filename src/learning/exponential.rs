@@ -1,12 +1,11 @@
 //! The exponential function on many single-precision numbers at once.
 //!
 //! `libm::expf` takes one number at a time and would be a third of a control step.
-//! This is the same method - range reduction by ln 2, then a polynomial - written
-//! so that the compiler turns it into vector instructions, with results that are
-//! the same on every processor.
+//! This is the same method - range reduction by ln 2, then a polynomial - on
+//! vectors, with results that are the same on every processor.
 
-/// Numbers computed at once where there are many.
-pub(super) const LANES: usize = 16;
+use pulp::Simd;
+use pulp::bytemuck::cast;
 
 /// Below this the exponential counts as its value here, about 1e-38.
 const SMALLEST: f32 = -87.0;
@@ -28,43 +27,62 @@ const POLYNOMIAL: [f32; 6] = [
     5.000_000_1e-1,
 ];
 
-/// Replaces every number by its exponential, to within two units in the last place
-/// between -87 and 88; arguments outside are moved to these bounds.
+/// The exponentials of some numbers, to within two units in the last place between
+/// -87 and 88; arguments outside are moved to these bounds.
 #[inline(always)]
-pub(super) fn exponentials<const N: usize>(numbers: &mut [f32; N]) {
-    for number in numbers {
-        let x = number.clamp(SMALLEST, LARGEST);
-        let shifted = x * std::f32::consts::LOG2_E + ROUNDING;
-        let power = shifted - ROUNDING;
-        let r = x - power * LN2_HIGH - power * LN2_LOW;
-        let mut p = POLYNOMIAL[0];
-        for coefficient in &POLYNOMIAL[1..] {
-            p = p * r + coefficient;
-        }
-        let mantissa = p * r * r + r + 1.0;
-        // The low bits of `shifted` are the power as an integer.
-        let exponent = shifted.to_bits().wrapping_add(127) << 23;
-        *number = mantissa * f32::from_bits(exponent);
+pub(super) fn exponentials<S: Simd>(simd: S, numbers: S::f32s) -> S::f32s {
+    let splat = |number| simd.splat_f32s(number);
+    let times = |a, b| simd.mul_f32s(a, b);
+    let plus = |a, b| simd.add_f32s(a, b);
+    let x = simd.min_f32s(simd.max_f32s(numbers, splat(SMALLEST)), splat(LARGEST));
+    let shifted = plus(times(x, splat(std::f32::consts::LOG2_E)), splat(ROUNDING));
+    let power = simd.sub_f32s(shifted, splat(ROUNDING));
+    let r = simd.sub_f32s(x, times(power, splat(LN2_HIGH)));
+    let r = simd.sub_f32s(r, times(power, splat(LN2_LOW)));
+    let mut p = splat(POLYNOMIAL[0]);
+    for &coefficient in &POLYNOMIAL[1..] {
+        p = plus(times(p, r), splat(coefficient));
     }
+    let mantissa = plus(plus(times(times(p, r), r), r), splat(1.0));
+    // The low bits of `shifted` are the power as an integer.
+    let biased = simd.add_u32s(cast(shifted), simd.splat_u32s(127));
+    let exponent = simd.wrapping_dyn_shl_u32s(biased, simd.splat_u32s(23));
+    times(mantissa, cast(exponent))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pulp::{Arch, Scalar, WithSimd};
+
+    struct Map<'a>(&'a mut [f32]);
+
+    impl WithSimd for Map<'_> {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            for numbers in S::as_mut_simd_f32s(self.0).0 {
+                *numbers = exponentials(simd, *numbers);
+            }
+        }
+    }
 
     #[test]
     fn agrees_with_libm_to_two_units_in_the_last_place() {
+        let arguments: Vec<f32> = (0..200_000)
+            .map(|i| -87.0 + 175.0 * (i as f32 / 2e5))
+            .collect();
+        let mut numbers = arguments.clone();
+        Map(&mut numbers).with_simd(Scalar);
         let mut worst = 0.0_f64;
-        for i in 0..200_000 {
-            let x = -87.0 + 175.0 * (i as f32 / 200_000.0);
-            let mut numbers = [x; LANES];
-            exponentials(&mut numbers);
-            let exact = libm::exp(f64::from(x));
-            worst = worst.max((f64::from(numbers[3]) / exact - 1.0).abs());
+        for (number, x) in numbers.iter().zip(&arguments) {
+            worst = worst.max((f64::from(*number) / libm::exp(f64::from(*x)) - 1.0).abs());
         }
         assert!(worst < 2.0 * f64::from(f32::EPSILON), "{worst:e}");
-        let mut numbers = [0.0; LANES];
-        exponentials(&mut numbers);
-        assert_eq!(numbers, [1.0; LANES]);
+        let mut wide = arguments;
+        Arch::new().dispatch(Map(&mut wide));
+        assert_eq!(numbers, wide, "every vector width gives the same bits");
+        assert_eq!(exponentials(Scalar, 0.0), 1.0);
     }
 }

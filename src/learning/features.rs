@@ -1,23 +1,28 @@
 //! Normalised Gaussian RBF features (Thesis Eq. 2.22).
 //!
 //! On a full grid with one width per axis the normalised features factorise into
-//! products of one-dimensional Gaussians: five proximity sensors with two centres
-//! each need ten exponentials, not 32. A map whose last axes are those of another
-//! map starts from its features.
+//! products of Gaussians over a few inputs each: five proximity sensors with two
+//! centres each need 8 + 4 exponentials, not 32. A map whose last axes are those of
+//! another map starts from its features.
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::exponential::{LANES, exponentials};
+use super::exponential::exponentials;
 use super::linear::padded;
-use crate::worlds::{Catalogue, FeatureMap, MapId};
+use crate::worlds::{Axis, Catalogue, FeatureMap, MapId};
 
-/// One Gaussian along one axis.
-#[derive(Clone, Copy, Debug)]
-struct Gaussian {
+/// Axes are taken together as long as they have no more Gaussians than this: enough
+/// to fill a vector, few enough to save exponentials.
+const GROUP: usize = 8;
+
+/// What one input adds to the exponents of all Gaussians of a grid.
+#[derive(Clone, Debug)]
+struct Term {
     input: usize,
-    centre: f32,
-    /// -1 / (2 sigma^2).
-    exponent: f32,
+    /// In whole lanes.
+    centres: Vec<f32>,
+    /// -1 / (2 sigma^2), or 0 for a Gaussian over other inputs.
+    exponents: Vec<f32>,
 }
 
 /// A feature map, prepared.
@@ -27,10 +32,10 @@ struct Grid {
     width: usize,
     /// The map whose features the grid starts from, and their number.
     base: Option<(MapId, usize)>,
-    /// The Gaussians along the remaining axes, the axis varying fastest first.
-    gaussians: Vec<Gaussian>,
-    /// Number of Gaussians along each of these axes.
-    axes: Vec<usize>,
+    /// The Gaussians are those of groups of the remaining axes, the group varying
+    /// fastest first: their numbers.
+    groups: Vec<usize>,
+    terms: Vec<Term>,
 }
 
 /// Computes features from inputs.
@@ -69,7 +74,7 @@ impl Encoder {
     /// Room for the features of a state.
     #[must_use]
     pub fn features(&self) -> Features {
-        let gaussians = self.grids.iter().map(|grid| padded(grid.gaussians.len()));
+        let gaussians = self.grids.iter().map(|grid| grid.gaussians());
         Features {
             inputs: Vec::new(),
             gaussians: vec![0.0; gaussians.max().unwrap_or(0)],
@@ -131,20 +136,58 @@ impl Grid {
         let base = maps.iter().enumerate().filter(ends_in);
         let base = base.max_by_key(|(_, other)| other.axes.len());
         let own = map.axes.len() - base.map_or(0, |(_, other)| other.axes.len());
-        let own = map.axes[..own].iter().rev();
-        let gaussians = own.clone().flat_map(|axis| {
-            (0..axis.centres).map(|k| Gaussian {
-                input: axis.input,
-                centre: (k as f64 / (axis.centres - 1) as f64) as f32,
-                exponent: (-0.5 / (axis.sigma * axis.sigma)) as f32,
-            })
-        });
-        Self {
+        let mut grid = Self {
             width: padded(map.width()),
             base: base.map(|(index, other)| (MapId(index as u8), other.width())),
-            gaussians: gaussians.collect(),
-            axes: own.map(|axis| axis.centres).collect(),
+            groups: Vec::new(),
+            terms: Vec::new(),
+        };
+        let mut axes = &map.axes[..own];
+        while !axes.is_empty() {
+            let size = |count: usize| -> usize {
+                let group = &axes[axes.len() - count..];
+                group.iter().map(|axis| axis.centres).product()
+            };
+            let fits = |&count: &usize| count == 1 || size(count) <= GROUP;
+            let count = (1..=axes.len()).take_while(fits).count();
+            let (others, group) = axes.split_at(axes.len() - count);
+            grid.add(group);
+            axes = others;
         }
+        let lanes = grid.gaussians();
+        for term in &mut grid.terms {
+            term.centres.resize(lanes, 0.0);
+            term.exponents.resize(lanes, 0.0);
+        }
+        grid
+    }
+
+    /// Number of Gaussians, padded to whole vectors.
+    fn gaussians(&self) -> usize {
+        self.groups.iter().sum::<usize>().next_multiple_of(GROUP)
+    }
+
+    /// Adds the Gaussians of a group of axes.
+    fn add(&mut self, group: &[Axis]) {
+        let before: usize = self.groups.iter().sum();
+        let size = group.iter().map(|axis| axis.centres).product();
+        let mut block = size;
+        for axis in group {
+            block /= axis.centres;
+            let centre = |place| (place / block % axis.centres) as f32;
+            let spacing = 1.0 / (axis.centres - 1) as f32;
+            let mut term = Term {
+                input: axis.input,
+                centres: vec![0.0; before],
+                exponents: vec![0.0; before],
+            };
+            let centres = (0..size).map(|place| centre(place) * spacing);
+            term.centres.extend(centres);
+            let exponent = (-0.5 / (axis.sigma * axis.sigma)) as f32;
+            term.exponents.resize(before + size, exponent);
+            self.terms.push(term);
+        }
+        self.groups.push(size);
     }
 }
 
@@ -164,25 +207,26 @@ impl WithSimd for Compute<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { grid, out, .. } = self;
-        grid.evaluate(self.inputs, self.gaussians);
-        grid.normalise(self.gaussians);
-        let Some((&centres, axes)) = grid.axes.split_first() else {
+        grid.evaluate(simd, self.inputs, self.gaussians);
+        // One division normalises along all axes.
+        let scale = 1.0 / grid.sum(self.gaussians);
+        let Some((&size, groups)) = grid.groups.split_first() else {
             return;
         };
-        let (first, mut rest) = self.gaussians.split_at(centres);
-        let mut width = centres;
+        let (first, mut rest) = self.gaussians.split_at(size);
+        let mut width = size;
         if let Some(base) = self.base {
             width *= base.len();
             for (block, &factor) in out.chunks_exact_mut(base.len()).zip(first) {
-                scaled(simd, block, base, factor);
+                scaled(simd, block, base, factor * scale);
             }
         } else {
-            out[..centres].copy_from_slice(first);
+            scaled(simd, &mut out[..size], first, scale);
         }
-        for &centres in axes {
-            let (factors, others) = rest.split_at(centres);
+        for &size in groups {
+            let (factors, others) = rest.split_at(size);
             extend(simd, out, width, factors);
-            width *= centres;
+            width *= size;
             rest = others;
         }
     }
@@ -191,33 +235,34 @@ impl WithSimd for Compute<'_> {
 impl Grid {
     /// The Gaussians of the inputs.
     #[inline(always)]
-    fn evaluate(&self, inputs: &[f32], out: &mut [f32]) {
-        let lanes = out.as_chunks_mut::<LANES>().0.iter_mut();
-        for (gaussians, lanes) in self.gaussians.chunks(LANES).zip(lanes) {
-            for (gaussian, lane) in gaussians.iter().zip(&mut *lanes) {
-                let offset = inputs[gaussian.input] - gaussian.centre;
-                *lane = offset * offset * gaussian.exponent;
+    fn evaluate<S: Simd>(&self, simd: S, inputs: &[f32], gaussians: &mut [f32]) {
+        let lanes = self.gaussians();
+        let registers = S::as_mut_simd_f32s(&mut gaussians[..lanes]).0;
+        for (register, gaussians) in registers.iter_mut().enumerate() {
+            let mut exponents = simd.splat_f32s(0.0);
+            for term in &self.terms {
+                let input = simd.splat_f32s(inputs[term.input]);
+                let centre = S::as_simd_f32s(&term.centres).0[register];
+                let exponent = S::as_simd_f32s(&term.exponents).0[register];
+                let offset = simd.sub_f32s(input, centre);
+                let square = simd.mul_f32s(offset, offset);
+                exponents = simd.add_f32s(exponents, simd.mul_f32s(square, exponent));
             }
-            exponentials(lanes);
+            *gaussians = exponentials(simd, exponents);
         }
     }
 
-    /// Scales the first axis so that the products will add up to 1: one division
-    /// for all axes.
+    /// The sum of all products of one Gaussian of each group.
     #[inline(always)]
-    fn normalise(&self, gaussians: &mut [f32]) {
-        let mut rest = &*gaussians;
-        let mut sum = 1.0;
-        for &centres in &self.axes {
-            let (axis, others) = rest.split_at(centres);
-            sum *= axis.iter().sum::<f32>();
+    fn sum(&self, gaussians: &[f32]) -> f32 {
+        let mut rest = gaussians;
+        let mut product = 1.0;
+        for &size in &self.groups {
+            let (group, others) = rest.split_at(size);
+            product *= group.iter().sum::<f32>();
             rest = others;
         }
-        let scale = 1.0 / sum;
-        let first = self.axes.first().map_or(0, |&centres| centres);
-        for gaussian in &mut gaussians[..first] {
-            *gaussian *= scale;
-        }
+        product
     }
 }
 
@@ -253,7 +298,6 @@ fn scaled<S: Simd>(simd: S, out: &mut [f32], numbers: &[f32], factor: f32) {
 mod tests {
     use super::*;
     use crate::scenario::{RbfWidth, Scenario, WorldModel};
-    use crate::worlds::Axis;
     use crate::worlds::World;
     use crate::worlds::foraging::{ForagingWorld, INPUTS};
     use proptest::prelude::*;

@@ -1,12 +1,13 @@
 //! The linear approximator: value = parameters . features (Thesis Eq. 2.20).
 //!
 //! The loops run on the widest vectors that the processor has, chosen at run time by
-//! `pulp`. Lane l of sixteen holds the sum over the features l, l + 16, ... and the
+//! `pulp`. Lane l of 32 holds the sum over the features l, l + 32, ... and the
 //! lanes are added in a fixed tree, so the result is the same on every vector width.
 
 use pulp::{Arch, Simd, WithSimd};
 
-pub(super) use super::exponential::LANES;
+/// Sums run over this many lanes, whatever vectors the processor has.
+const LANES: usize = 32;
 
 /// `width` rounded up to whole groups of lanes; vectors are padded with zeros to it.
 pub(super) fn padded(width: usize) -> usize {
@@ -22,24 +23,19 @@ pub(super) fn value(parameters: &[f32], features: &[f32]) -> f32 {
     })
 }
 
-/// The values of several parameter vectors, one after the other.
-#[inline]
-pub(super) fn values(parameters: &[f32], features: &[f32], values: &mut [f32]) {
-    Arch::new().dispatch(Values {
-        parameters,
-        features,
-        values,
-    });
-}
+/// The parameters of several vectors for one feature.
+pub(super) type Row = [f32; ROW];
 
-/// One gradient step: `parameters += step * features` (Thesis Eq. 2.19, 2.21).
+/// Vectors that are evaluated at once.
+pub(super) const ROW: usize = 8;
+
+/// Features that are taken at once: sums that do not wait for one another.
+pub(super) const STRIDE: usize = 4;
+
+/// The values of up to eight parameter vectors, given by the rows of the features.
 #[inline]
-pub(super) fn learn(parameters: &mut [f32], features: &[f32], step: f32) {
-    Arch::new().dispatch(Learn {
-        parameters,
-        features,
-        step,
-    });
+pub(super) fn values(rows: &[Row], features: &[f32]) -> Row {
+    Arch::new().dispatch(Values { rows, features })
 }
 
 struct Value<'a> {
@@ -57,37 +53,36 @@ impl WithSimd for Value<'_> {
 }
 
 struct Values<'a> {
-    parameters: &'a [f32],
+    rows: &'a [Row],
     features: &'a [f32],
-    values: &'a mut [f32],
 }
 
 impl WithSimd for Values<'_> {
-    type Output = ();
+    type Output = Row;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let mut rest = self.parameters;
-        for value in self.values {
-            let (vector, others) = rest.split_at(self.features.len());
-            *value = dot(simd, vector, self.features);
-            rest = others;
+    fn with_simd<S: Simd>(self, simd: S) -> Row {
+        let mut sums = [[simd.splat_f32s(0.0); ROW]; STRIDE];
+        let rows = self.rows.as_chunks::<STRIDE>().0;
+        let features = self.features.as_chunks::<STRIDE>().0;
+        for (rows, features) in rows.iter().zip(features) {
+            for ((row, &feature), sums) in rows.iter().zip(features).zip(&mut sums) {
+                let feature = simd.splat_f32s(feature);
+                for (parameters, sum) in S::as_simd_f32s(row).0.iter().zip(sums) {
+                    *sum = simd.add_f32s(*sum, simd.mul_f32s(feature, *parameters));
+                }
+            }
         }
-    }
-}
-
-struct Learn<'a> {
-    parameters: &'a mut [f32],
-    features: &'a [f32],
-    step: f32,
-}
-
-impl WithSimd for Learn<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        add(simd, self.parameters, self.features, self.step);
+        let mut values = [0.0; ROW];
+        let [a, b, c, d] = sums;
+        for (register, value) in S::as_mut_simd_f32s(&mut values).0.iter_mut().enumerate() {
+            let (even, odd) = (
+                simd.add_f32s(a[register], c[register]),
+                simd.add_f32s(b[register], d[register]),
+            );
+            *value = simd.add_f32s(even, odd);
+        }
+        values
     }
 }
 
@@ -191,6 +186,7 @@ fn add<S: Simd>(simd: S, parameters: &mut [f32], features: &[f32], step: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pulp::Scalar;
 
     #[test]
     fn values_and_steps_agree_with_the_definition() {
@@ -201,8 +197,36 @@ mod tests {
             terms.map(|(&p, &f)| f64::from(p) * f64::from(f)).sum()
         };
         assert!((f64::from(value(&parameters, &features)) - exact(&parameters)).abs() < 1e-4);
+        let narrow = dot(Scalar, &parameters, &features);
+        assert_eq!(
+            value(&parameters, &features),
+            narrow,
+            "every vector width gives the same bits"
+        );
         let expected = exact(&parameters) + 0.5 * exact(&features);
-        learn(&mut parameters, &features, 0.5);
+        add(Scalar, &mut parameters, &features, 0.5);
         assert!((exact(&parameters) - expected).abs() < 1e-4);
+    }
+
+    #[test]
+    fn rows_give_the_values_of_their_columns() {
+        let features: Vec<f32> = (0..12).map(|i| i as f32 / 12.0).collect();
+        let rows: Vec<Row> = (0..12)
+            .map(|i| std::array::from_fn(|column| (i * column) as f32))
+            .collect();
+        let all = values(&rows, &features);
+        for (column, value) in all.iter().enumerate() {
+            let terms = rows.iter().zip(&features).map(|(row, f)| row[column] * f);
+            assert!((value - terms.sum::<f32>()).abs() < 1e-3);
+        }
+        let narrow = Values {
+            rows: &rows,
+            features: &features,
+        };
+        assert_eq!(
+            all,
+            narrow.with_simd(Scalar),
+            "every vector width gives the same bits"
+        );
     }
 }

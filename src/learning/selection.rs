@@ -1,5 +1,6 @@
 //! Softmax action selection with the epsilon-greedy switch (Thesis Eq. 2.12, 3.1).
 
+use pulp::{Arch, Simd, WithSimd};
 use rand::RngExt;
 
 use super::exponential::exponentials;
@@ -35,23 +36,24 @@ impl Softmax {
     pub fn choose(&self, values: &[f32], temperature: f32, rng: &mut Stream) -> usize {
         let draw = rng.random::<f32>();
         if values.len() > LANES {
-            return self.pick(&mut in_lanes(values), values.len(), temperature, draw);
+            return self.pick(values, &mut in_lanes(values), temperature, draw);
         }
         let mut weights = [f32::NEG_INFINITY; LANES];
         for (weight, value) in weights.iter_mut().zip(values) {
             *weight = *value;
         }
-        self.pick(&mut weights, values.len(), temperature, draw)
+        self.pick(values, &mut weights, temperature, draw)
     }
 
     /// Writes the probability with which each of `values` is chosen.
     pub fn probabilities(&self, values: &[f32], temperature: f32, out: &mut [f32]) {
         let count = values.len() as f32;
         let mut weights = in_lanes(values);
-        let sum = boltzmann(&mut weights, temperature);
+        boltzmann(&mut weights, temperature);
+        let sum = weights.iter().sum();
         if self.is_greedy(sum) {
             out.fill(self.epsilon / count);
-            out[heaviest(&weights)] += 1.0 - self.epsilon;
+            out[greedy(values)] += 1.0 - self.epsilon;
         } else {
             for (probability, weight) in out.iter_mut().zip(weights) {
                 *probability = weight / sum;
@@ -64,26 +66,27 @@ impl Softmax {
         1.0 / sum > self.probability_limit
     }
 
-    /// Chooses one of the first `count` values in whole lanes.
+    /// Chooses one of `values`, which `weights` holds in whole lanes.
     #[inline(always)]
-    fn pick(&self, values: &mut [f32], count: usize, temperature: f32, draw: f32) -> usize {
-        let sum = boltzmann(values, temperature);
-        let weights = values;
+    fn pick(&self, values: &[f32], weights: &mut [f32], temperature: f32, draw: f32) -> usize {
+        boltzmann(weights, temperature);
+        let mut sum = 0.0;
+        for weight in &mut *weights {
+            sum += *weight;
+            *weight = sum;
+        }
         if self.is_greedy(sum) {
             return if draw < self.epsilon {
-                uniform(draw / self.epsilon, count)
+                uniform(draw / self.epsilon, values.len())
             } else {
-                heaviest(weights)
+                greedy(values)
             };
         }
         // Counted, not searched: no processor can predict where a search would end.
-        let mut left = draw * sum;
-        let mut passed = 0;
-        for weight in weights {
-            left -= *weight;
-            passed += usize::from(left >= 0.0);
-        }
-        passed.min(count - 1)
+        let passed = weights
+            .iter()
+            .map(|&sum_so_far| usize::from(sum_so_far <= draw * sum));
+        passed.sum::<usize>().min(values.len() - 1)
     }
 }
 
@@ -100,31 +103,44 @@ fn in_lanes(values: &[f32]) -> Vec<f32> {
     lanes
 }
 
-/// Replaces values in whole lanes by the weights exp((value - largest) / temperature)
-/// and returns their sum.
-#[inline(always)]
-fn boltzmann(values: &mut [f32], temperature: f32) -> f32 {
-    let values = values.as_chunks_mut::<LANES>().0;
-    let larger = |a: f32, &b: &f32| if b > a { b } else { a };
-    let largest = values.iter().flatten().fold(f32::NEG_INFINITY, larger);
-    let coldness = 1.0 / temperature;
-    let mut sum = 0.0;
-    for lanes in values {
-        for value in &mut *lanes {
-            *value = (*value - largest) * coldness;
-        }
-        exponentials(lanes);
-        sum += lanes.iter().sum::<f32>();
-    }
-    sum
+/// Replaces values in whole lanes by the weights exp((value - largest) / temperature).
+#[inline]
+fn boltzmann(values: &mut [f32], temperature: f32) {
+    Arch::new().dispatch(Boltzmann {
+        values,
+        temperature,
+    });
 }
 
-/// The place of the largest weight, which is 1, the first of equals.
-fn heaviest(weights: &[f32]) -> usize {
-    weights
-        .iter()
-        .position(|&weight| weight == 1.0)
-        .unwrap_or(0)
+struct Boltzmann<'a> {
+    values: &'a mut [f32],
+    temperature: f32,
+}
+
+impl WithSimd for Boltzmann<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let larger = |a: f32, &b: &f32| if b > a { b } else { a };
+        let largest = self.values.iter().fold(f32::NEG_INFINITY, larger);
+        let largest = simd.splat_f32s(largest);
+        let coldness = simd.splat_f32s(1.0 / self.temperature);
+        for values in S::as_mut_simd_f32s(self.values).0 {
+            let exponents = simd.mul_f32s(simd.sub_f32s(*values, largest), coldness);
+            *values = exponentials(simd, exponents);
+        }
+    }
+}
+
+/// The place of the largest value, the first of equals.
+#[inline(always)]
+fn greedy(values: &[f32]) -> usize {
+    let mut best = 0;
+    for (index, &value) in values.iter().enumerate() {
+        best = if value > values[best] { index } else { best };
+    }
+    best
 }
 
 #[cfg(test)]

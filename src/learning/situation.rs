@@ -2,7 +2,7 @@
 
 use super::features::{Encoder, Features};
 use super::hierarchy::CompositeValues;
-use super::linear;
+use super::linear::{self, Row};
 use super::plan::Plan;
 use super::skills::Skills;
 use crate::worlds::StateType;
@@ -28,7 +28,9 @@ struct Cached {
 #[derive(Clone, Debug)]
 struct SkillValues {
     state: u64,
-    actions: Vec<f32>,
+    /// In whole rows.
+    actions: Vec<Row>,
+    count: usize,
     best: f32,
 }
 
@@ -66,7 +68,8 @@ impl Situation {
             skills: skills
                 .map(|skill| SkillValues {
                     state: 0,
-                    actions: vec![0.0; skill.vectors().count()],
+                    actions: skill.values(),
+                    count: skill.vectors().count(),
                     best: 0.0,
                 })
                 .collect(),
@@ -101,7 +104,8 @@ impl Mind<'_> {
     #[inline]
     pub(super) fn action_values<'s>(&self, now: &'s mut Situation, skill: usize) -> &'s [f32] {
         self.evaluate_skill(now, skill);
-        &now.skills[skill].actions
+        let values = &now.skills[skill];
+        &values.actions.as_flattened()[..values.count]
     }
 
     #[inline]
@@ -113,11 +117,9 @@ impl Mind<'_> {
         values.state = now.state;
         let skill = &self.skills.all()[index];
         let features = self.encoder.encode(skill.map, &mut now.features);
-        skill.evaluate(features, &mut values.actions);
-        values.best = values
-            .actions
-            .iter()
-            .fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
+        let actions = skill.evaluate(features, &mut values.actions);
+        let larger = |a: f32, &b: &f32| if b > a { b } else { a };
+        values.best = actions.iter().fold(f32::NEG_INFINITY, larger);
     }
 
     /// V(i, s) of a node, Algorithm 2.5 with Eq. 3.2: choose the child with C~, return

@@ -1,7 +1,7 @@
 //! The learned values of the primitive subtasks.
 
 use super::features::Encoder;
-use super::linear::padded;
+use super::linear::{ROW, Row, STRIDE, values};
 use crate::worlds::{Catalogue, MapId, SubtaskId};
 
 /// The action values Q_prim of one primitive subtask (Thesis Eq. 3.1, 3.9).
@@ -12,8 +12,12 @@ pub struct Skill {
     pub(super) map: MapId,
     /// Number of features.
     width: usize,
-    /// One padded parameter vector an action.
+    actions: usize,
+    /// One parameter vector an action.
     parameters: Vec<f32>,
+    /// The same parameters for evaluation: for every eight actions one row a feature,
+    /// in whole strides.
+    rows: Vec<Row>,
 }
 
 /// The one copy of the primitive subtasks that a population shares (Thesis 3.1).
@@ -44,39 +48,64 @@ impl Skill {
         let width = catalogue.width(subtask);
         let fits = vectors.len() == catalogue.subtask(subtask).actions()
             && vectors.iter().all(|vector| vector.len() == width);
-        let mut parameters = Vec::with_capacity(vectors.len() * padded(width));
-        for vector in vectors {
-            parameters.extend_from_slice(vector);
-            parameters.resize(parameters.len().next_multiple_of(padded(width)), 0.0);
-        }
-        fits.then_some(Self {
+        let mut skill = Self {
             subtask,
             map: catalogue.subtask(subtask).map,
             width,
-            parameters,
-        })
+            actions: vectors.len(),
+            parameters: vectors.concat(),
+            rows: Vec::new(),
+        };
+        let groups = vectors.len().div_ceil(ROW);
+        skill.rows = vec![[0.0; ROW]; groups * skill.rows_per_group()];
+        for (action, vector) in vectors.iter().enumerate() {
+            skill.copy_to_rows(action, vector);
+        }
+        fits.then_some(skill)
     }
 
     /// The parameter vectors, one an action.
     pub fn vectors(&self) -> impl Iterator<Item = &[f32]> {
-        self.padded().map(|vector| &vector[..self.width])
+        self.parameters.chunks_exact(self.width)
     }
 
-    /// The parameter vectors padded to whole lanes, one an action.
-    pub(super) fn padded(&self) -> impl ExactSizeIterator<Item = &[f32]> {
-        self.parameters.chunks_exact(padded(self.width))
+    /// Room for Q_prim of every action.
+    pub(super) fn values(&self) -> Vec<Row> {
+        vec![[0.0; ROW]; self.actions.div_ceil(ROW)]
     }
 
-    /// Q_prim of every action.
-    pub(super) fn evaluate(&self, features: &[f32], values: &mut [f32]) {
-        super::linear::values(&self.parameters, features, values);
+    /// Computes Q_prim of every action.
+    #[inline]
+    pub(super) fn evaluate<'v>(&self, features: &[f32], room: &'v mut [Row]) -> &'v [f32] {
+        let mut rest = &*self.rows;
+        for room in &mut *room {
+            let (rows, others) = rest.split_at(self.rows_per_group());
+            *room = values(rows, features);
+            rest = others;
+        }
+        &room.as_flattened()[..self.actions]
+    }
+
+    fn rows_per_group(&self) -> usize {
+        self.width.next_multiple_of(STRIDE)
+    }
+
+    fn copy_to_rows(&mut self, action: usize, vector: &[f32]) {
+        let group = action / ROW * self.rows_per_group();
+        for (row, parameter) in self.rows[group..].iter_mut().zip(vector) {
+            row[action % ROW] = *parameter;
+        }
     }
 
     /// One gradient step on an action's value (Thesis Eq. 3.6).
     pub(super) fn learn(&mut self, action: usize, features: &[f32], step: f32) {
-        let stride = features.len();
-        let vector = &mut self.parameters[action * stride..][..stride];
-        super::linear::learn(vector, features, step);
+        let group = action / ROW * self.rows_per_group();
+        let vector = &mut self.parameters[action * self.width..][..self.width];
+        let rows = &mut self.rows[group..];
+        for ((parameter, row), feature) in vector.iter_mut().zip(rows).zip(features) {
+            *parameter += step * feature;
+            row[action % ROW] = *parameter;
+        }
     }
 
     /// Q_prim of every action for the inputs of a state.
@@ -85,9 +114,7 @@ impl Skill {
         let mut features = encoder.features();
         features.load(inputs);
         let features = encoder.encode(self.map, &mut features);
-        self.padded()
-            .map(|vector| super::linear::value(vector, features))
-            .collect()
+        self.evaluate(features, &mut self.values()).to_vec()
     }
 }
 

@@ -4,7 +4,6 @@ use rand::RngExt;
 
 use super::features::Encoder;
 use super::gate::{Gate, Stopped};
-use super::linear;
 use super::selection::{Softmax, uniform};
 use super::skills::Skill;
 use crate::random::Stream;
@@ -38,7 +37,7 @@ pub fn train<W: World>(
     let mut temperature = model.initial_temperature as f32;
     let mut skill = Skill::new(primitive, catalogue, model.initial_parameter as f32);
     let mut features = encoder.features();
-    let mut values = vec![0.0; actions];
+    let mut room = skill.values();
     let mut steps = 0;
     while steps < training.steps {
         let begun = steps;
@@ -48,12 +47,10 @@ pub fn train<W: World>(
         for _ in 0..training.episode_steps.min(training.steps - steps) {
             features.load(world.percept(&state).as_ref());
             let features = encoder.encode(map, &mut features);
-            for (value, vector) in values.iter_mut().zip(skill.padded()) {
-                *value = linear::value(vector, features);
-            }
+            let values = skill.evaluate(features, &mut room);
             let action = match training.exploration {
                 Exploration::Uniform => uniform(rng.random(), actions),
-                Exploration::Softmax => softmax.choose(&values, temperature, rng),
+                Exploration::Softmax => softmax.choose(values, temperature, rng),
             };
             let before = state.clone();
             let reward = world.step(&mut state, primitive, action, rng);
