@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::Path;
 
+use serde::Deserialize;
 use thiserror::Error;
 
 /// Why a file was not read.
@@ -47,6 +48,18 @@ pub fn read_text(path: &Path, limit: u64) -> Result<String, ReadError> {
     String::from_utf8(read_bytes(path, limit)?).map_err(|error| ReadError::NotText {
         at: error.utf8_error().valid_up_to(),
     })
+}
+
+/// The version in the `format` field of a JSON text, if it has one. A file of another
+/// format is one of another model, so this is looked at before anything else in it.
+#[must_use]
+pub fn stated_format(text: &str) -> Option<u32> {
+    #[derive(Deserialize)]
+    struct AnyFormat {
+        format: u32,
+    }
+    let any: AnyFormat = serde_json::from_str(text).ok()?;
+    Some(any.format)
 }
 
 /// Replaces the file at `path` by `bytes`, so that at every moment, and after a

@@ -52,8 +52,8 @@ pub(super) struct Args {
     seed: u64,
 
     /// Computing threads; 0 means one for each processor.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    threads: usize,
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
 
     /// How to report.
     #[arg(long, value_enum, default_value_t)]
@@ -106,7 +106,7 @@ impl WorldTask for Task {
             banks: count(self.args.banks),
             seed: self.args.seed,
         };
-        let workers = Workers::new(self.args.threads)?;
+        let workers = Workers::new(usize::from(self.args.threads))?;
         let started = Instant::now();
         let evaluation = evaluate(&experiment, &tree, &protocol, &workers, &self.gate)?;
         let computed = self.gate.control_steps() as f64;

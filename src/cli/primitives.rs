@@ -29,8 +29,8 @@ pub(super) struct Args {
     seed: u64,
 
     /// Computing threads; 0 means one for each processor.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    threads: usize,
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
 
     /// How to report.
     #[arg(long, value_enum, default_value_t)]
@@ -90,7 +90,7 @@ impl WorldTask for Task {
     type Output = Result<Report, Failure>;
 
     fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let workers = Workers::new(self.args.threads)?;
+        let workers = Workers::new(usize::from(self.args.threads))?;
         let skills = experiment.train(self.args.seed, 0, &workers, &self.gate)?;
         let catalogue = experiment.catalogue();
         let primitives = skills.all().iter().map(|skill| {

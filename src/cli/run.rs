@@ -50,8 +50,8 @@ pub(super) struct Args {
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct How {
     /// Computing threads; 0 means one for each processor.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    threads: usize,
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
 
     /// Checkpoints kept in generations/: all, none, or every N-th generation's.
     #[arg(long, value_name = "all|none|N", default_value = "all")]
@@ -70,7 +70,7 @@ impl How {
     /// The library's options.
     pub(super) fn options(&self, force: bool) -> RunOptions {
         RunOptions {
-            threads: self.threads,
+            threads: usize::from(self.threads),
             keep: self.keep,
             force,
         }

@@ -11,7 +11,7 @@ use thiserror::Error;
 use crate::evolution::{Experiment, Individual, Origin, State, TreeError, read_tree};
 use crate::hierarchy::to_text;
 use crate::learning::{CompositeValues, Hierarchy, Skill, Skills};
-use crate::scenario::{Scenario, ScenarioError};
+use crate::scenario::{LearningModel, Scenario, ScenarioError};
 use crate::worlds::{Catalogue, World};
 
 /// Version of the checkpoint format.
@@ -20,6 +20,9 @@ pub const CHECKPOINT_FORMAT: u32 = 1;
 /// Largest checkpoint that is read, in bytes; a large population of complete
 /// hierarchies takes a tenth of it.
 pub const MAX_CHECKPOINT_BYTES: u64 = 1 << 30;
+
+/// Largest value of a counter: 10 million control steps a second for 28 years.
+const MAX_COUNT: u64 = 1 << 53;
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, Error)]
@@ -271,9 +274,10 @@ impl Checkpoint {
                 ),
             ));
         }
+        self.check_counters()?;
         let individuals = self.individuals.iter().enumerate().map(|(index, file)| {
             let place = format!("state.individuals[{index}]");
-            file.individual(&place, catalogue, evolution.maximum_depth)
+            file.individual(&place, catalogue, &experiment.scenario)
         });
         Ok(State {
             generation: self.generation,
@@ -283,6 +287,21 @@ impl Checkpoint {
             control_steps: self.control_steps,
             converged: self.converged,
         })
+    }
+
+    /// The counters leave room to count on.
+    fn check_counters(&self) -> Result<(), CheckpointError> {
+        for (name, found) in [
+            ("generation", self.generation),
+            ("next_id", self.next_id),
+            ("control_steps", self.control_steps),
+        ] {
+            if found > MAX_COUNT {
+                let message = format!("found {found}; allowed: 0 to {MAX_COUNT}");
+                return Err(misfit(&format!("state.{name}"), message));
+            }
+        }
+        Ok(())
     }
 
     fn skills(&self, catalogue: &Catalogue) -> Result<Skills, CheckpointError> {
@@ -354,9 +373,9 @@ impl IndividualFile {
         &self,
         place: &str,
         catalogue: &Catalogue,
-        maximum_depth: usize,
+        scenario: &Scenario,
     ) -> Result<Individual, CheckpointError> {
-        let tree = read_tree(&self.tree, catalogue, maximum_depth)
+        let tree = read_tree(&self.tree, catalogue, scenario.evolution.maximum_depth)
             .map_err(|error: TreeError| misfit(&format!("{place}.tree"), error.to_string()))?;
         let mut files = self.composites.iter();
         let mut values = Vec::with_capacity(tree.nodes().len());
@@ -383,6 +402,7 @@ impl IndividualFile {
                     ),
                 )
             })?;
+            check_temperature(&place, file.temperature, &scenario.learning)?;
             values.push(Some(file.values(subtask, catalogue).ok_or_else(|| {
                 let width = catalogue.width(subtask);
                 misfit(
@@ -419,6 +439,25 @@ impl CompositeFile {
             .map(|child| [child.c_tilde.clone(), child.c.clone()])
             .collect();
         CompositeValues::from_vectors(subtask, catalogue, self.temperature, &vectors)
+    }
+}
+
+/// A temperature falls from its initial value to its limit.
+fn check_temperature(
+    place: &str,
+    found: f32,
+    learning: &LearningModel,
+) -> Result<(), CheckpointError> {
+    let (limit, initial) = (
+        learning.temperature_limit as f32,
+        learning.initial_temperature as f32,
+    );
+    match (limit..=initial).contains(&found) {
+        true => Ok(()),
+        false => Err(misfit(
+            place,
+            format!("temperature: found {found}; allowed: {limit} to {initial}"),
+        )),
     }
 }
 

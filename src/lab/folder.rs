@@ -5,10 +5,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use tempfile::TempDir;
 use thiserror::Error;
 
 use super::manifest::{MANIFEST_FORMAT, Manifest};
-use crate::files::{ReadError, read_text, sync_folder, write_atomically};
+use crate::files::{ReadError, read_text, stated_format, sync_folder, write_atomically};
 use crate::scenario::MAX_FILE_BYTES;
 
 /// Why a run folder cannot be used.
@@ -128,14 +129,8 @@ impl RunFolder {
             _ => Path::new("."),
         };
         fs::create_dir_all(parent).map_err(|error| io_error(parent, error))?;
-        let replaced = Self::make_room(path, force)?;
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".new-run-");
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let fresh = builder
-            .tempdir_in(parent)
-            .map_err(|error| io_error(parent, error))?;
+        let replaced = Self::make_room(path, parent, force)?;
+        let fresh = temporary(parent)?;
         let folder = Self {
             path: fresh.path().to_owned(),
             _lock: lock(fresh.path())?,
@@ -163,7 +158,7 @@ impl RunFolder {
 
     /// Clears the place of a new run folder; an empty folder is no obstacle. Returns the
     /// lock of the run that was replaced.
-    fn make_room(path: &Path, force: bool) -> Result<Option<Self>, FolderError> {
+    fn make_room(path: &Path, parent: &Path, force: bool) -> Result<Option<Self>, FolderError> {
         let shown = path.display().to_string();
         let mut entries = match fs::read_dir(path) {
             Ok(entries) => entries,
@@ -180,7 +175,10 @@ impl RunFolder {
             return Err(FolderError::NotReplaceable { path: shown });
         }
         let old = Self::open(path)?;
-        fs::remove_dir_all(path).map_err(|error| io_error(path, error))?;
+        // It goes in one step: a process killed here leaves no half of a run in its place.
+        let aside = temporary(parent)?;
+        fs::rename(path, aside.path().join("replaced")).map_err(|error| io_error(path, error))?;
+        aside.close().map_err(|error| io_error(path, error))?;
         Ok(Some(old))
     }
 
@@ -274,23 +272,32 @@ impl RunFolder {
             path: path.clone(),
             message,
         };
+        if let Some(found) = stated_format(&text).filter(|&format| format != MANIFEST_FORMAT) {
+            return Err(wrong(format!(
+                "format: found {found}; allowed: {MANIFEST_FORMAT}"
+            )));
+        }
         let mut json = serde_json::Deserializer::from_str(&text);
         let mut manifest: Manifest = serde_path_to_error::deserialize(&mut json)
             .map_err(|error| wrong(format!("at {}: {}", error.path(), error.inner())))?;
         json.end()
             .map_err(|error| wrong(format!("at the end of the file: {error}")))?;
-        if manifest.format != MANIFEST_FORMAT {
-            let found = manifest.format;
-            return Err(wrong(format!(
-                "format: found {found}; allowed: {MANIFEST_FORMAT}"
-            )));
-        }
         manifest.scenario = manifest
             .scenario
             .checked("scenario")
             .map_err(|error| wrong(error.to_string()))?;
         Ok(manifest)
     }
+}
+
+/// A new folder with a name of its own, deleted if it is not kept.
+fn temporary(parent: &Path) -> Result<TempDir, FolderError> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".new-run-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+    let made = builder.tempdir_in(parent);
+    made.map_err(|error| io_error(parent, error))
 }
 
 fn lock(folder: &Path) -> Result<File, FolderError> {

@@ -105,6 +105,16 @@ impl Scenario {
     /// # Errors
     /// When the text is not JSON of this model or breaks a rule.
     pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
+        if let Some(format) = crate::files::stated_format(text).filter(|&format| format != FORMAT) {
+            return Err(ScenarioError::Invalid {
+                file: file.to_owned(),
+                problems: vec![Problem {
+                    place: String::from("format"),
+                    found: format.to_string(),
+                    allowed: FORMAT.to_string(),
+                }],
+            });
+        }
         let mut json = serde_json::Deserializer::from_str(text);
         let parsed = serde_path_to_error::deserialize::<_, Self>(&mut json)
             .map_err(|error| ScenarioError::syntax(file, &error))

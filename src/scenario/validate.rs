@@ -56,7 +56,7 @@ impl Check {
     }
 
     fn at(&self, part: &str) -> String {
-        if self.place.is_empty() || part.starts_with('[') {
+        if self.place.is_empty() || part.is_empty() || part.starts_with('[') {
             format!("{}{part}", self.place)
         } else {
             format!("{}.{part}", self.place)

@@ -1,0 +1,196 @@
+//! Random bytes, and random changes to valid files: the readers may refuse, never panic.
+
+use std::fs;
+use std::sync::LazyLock;
+
+use maxq_lab::evolution::{Experiment, read_tree};
+use maxq_lab::hierarchy::{canonical, parse, to_text};
+use maxq_lab::lab::{Checkpoint, WorldTask, read_events, with_world};
+use maxq_lab::scenario::Scenario;
+use maxq_lab::worlds::{Catalogue, World};
+use proptest::prelude::*;
+
+use super::common::{Record, record, short, smoke, threads};
+
+/// What is put into valid text: what readers stumble over.
+const TOKENS: &[&str] = &[
+    "",
+    "0",
+    "-1",
+    "1e999",
+    "1e-999",
+    "1e38",
+    "0.1",
+    "18446744073709551615",
+    "null",
+    "true",
+    "\"\"",
+    "\"Root\"",
+    "NaN",
+    "[",
+    "]",
+    "{",
+    "}",
+    ",",
+    ":",
+    "\"",
+    "\\",
+    "\\u0000",
+    "\\ud800",
+    "(",
+    ")",
+    "Wander",
+    " ",
+    "\n",
+    "\u{1b}",
+    "\u{9b}",
+    "\u{fffd}",
+    "é",
+];
+
+/// A change: where, as a share of the text; how many characters go; what comes.
+type Change = (f64, usize, usize);
+
+fn changes() -> impl Strategy<Value = Vec<Change>> {
+    prop::collection::vec((0.0..1.0, 0_usize..12, 0..TOKENS.len()), 1..4)
+}
+
+fn changed(text: &str, changes: &[Change]) -> String {
+    let mut text: Vec<char> = text.chars().collect();
+    for &(at, gone, token) in changes {
+        let from = (at * text.len() as f64) as usize;
+        let to = (from + gone).min(text.len());
+        text.splice(from..to, TOKENS[token].chars());
+    }
+    text.into_iter().collect()
+}
+
+/// Does what a reader of scenarios does with one.
+fn make_ready(text: &str) {
+    if let Ok(scenario) = Scenario::parse(text, "fuzzed.json") {
+        let _refused_or_ready = with_world(scenario, Ready);
+    }
+}
+
+struct Ready;
+
+impl WorldTask for Ready {
+    type Output = ();
+
+    fn carry_out<W: World + 'static>(self, _experiment: Experiment<W>) {}
+}
+
+/// Rebuilds the state of a checkpoint.
+struct State<'c>(&'c Checkpoint);
+
+impl WorldTask for State<'_> {
+    type Output = ();
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) {
+        let _refused_or_rebuilt = self.0.state(&experiment);
+    }
+}
+
+fn rebuild(text: &str) {
+    if let Ok(checkpoint) = Checkpoint::from_text(text) {
+        let _refused_or_rebuilt = with_world(checkpoint.scenario.clone(), State(&checkpoint));
+    }
+}
+
+/// Something done with the subtasks of `smoke`.
+struct WithCatalogue<F>(F);
+
+impl<F: FnOnce(&Catalogue)> WorldTask for WithCatalogue<F> {
+    type Output = ();
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) {
+        (self.0)(experiment.catalogue());
+    }
+}
+
+fn read_any_tree(text: &str) {
+    let task = WithCatalogue(|catalogue: &Catalogue| {
+        if let Ok(tree) = parse(text, catalogue) {
+            assert!(!canonical(&tree, catalogue).is_empty());
+        }
+        if let Ok(tree) = read_tree(text, catalogue, 4) {
+            let again = read_tree(&to_text(&tree, catalogue), catalogue, 4);
+            assert_eq!(again, Ok(tree), "{text:?}");
+        }
+    });
+    with_world(smoke(&[]), task).unwrap();
+}
+
+static RECORD: LazyLock<Record> = LazyLock::new(|| record(&short(&[]), 1, &threads(2)));
+
+fn text_of(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+/// The state of the checkpoint as text.
+fn state() -> &'static str {
+    let text = text_of(&RECORD.checkpoint);
+    let from = text.find("\"state\":").unwrap() + "\"state\":".len();
+    text[from..].trim_end().strip_suffix('}').unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..600)) {
+        let text = String::from_utf8_lossy(&bytes);
+        make_ready(&text);
+        rebuild(&text);
+        read_any_tree(&text);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        fs::write(&path, &bytes).unwrap();
+        let _refused_or_read = read_events(&path);
+    }
+
+    #[test]
+    fn any_changed_scenario_is_read_or_refused(changes in changes()) {
+        let valid = serde_json::to_string(&smoke(&[])).unwrap();
+        make_ready(&changed(&valid, &changes));
+    }
+
+    #[test]
+    fn any_changed_checkpoint_is_read_or_refused(changes in changes()) {
+        rebuild(&changed(text_of(&RECORD.checkpoint), &changes));
+        let state = changed(state(), &changes);
+        let crc32 = crc32fast::hash(state.as_bytes());
+        rebuild(&format!("{{\"format\":1,\"crc32\":\"{crc32:08x}\",\"state\":{state}}}"));
+    }
+
+    #[test]
+    fn any_changed_event_log_is_read_or_refused(changes in changes()) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        fs::write(&path, changed(text_of(&RECORD.events), &changes)).unwrap();
+        let _refused_or_read = read_events(&path);
+    }
+
+    #[test]
+    fn any_words_and_parentheses_are_read_or_refused(
+        words in prop::collection::vec(
+            prop::sample::select(vec!["(", ")", "Root", "Wander", "Capture", "Turn", "Nest", "é"]),
+            0..40,
+        ),
+    ) {
+        read_any_tree(&words.join(" "));
+        read_any_tree(&words.concat());
+        read_any_tree(&format!("(Root {})", words.join(" ")));
+    }
+}
+
+#[test]
+fn the_changed_files_are_readable_when_nothing_is_changed() {
+    let crc32 = crc32fast::hash(state().as_bytes());
+    let text = format!(
+        "{{\"format\":1,\"crc32\":\"{crc32:08x}\",\"state\":{}}}\n",
+        state()
+    );
+    assert_eq!(text.as_bytes(), RECORD.checkpoint);
+    assert!(Checkpoint::from_text(&text).is_ok());
+}

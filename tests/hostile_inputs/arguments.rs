@@ -1,0 +1,69 @@
+//! The usage of the command line: exit code 2, the bad value quoted, the allowed ones named.
+
+use super::common::program;
+use super::{assert_says, refused_with};
+
+#[test]
+fn wrong_usage_is_refused_with_code_2() {
+    for (arguments, parts) in [
+        (&["run"][..], &["<SCENARIO>"][..]),
+        (&["fly"], &["unrecognized subcommand 'fly'"]),
+        (
+            &["run", "smoke", "--speed"],
+            &["unexpected argument '--speed'"],
+        ),
+        (&["run", "smoke", "--seed", "-1"], &["-1"]),
+        (
+            &["run", "smoke", "--seed", "18446744073709551616"],
+            &["18446744073709551616", "--seed"],
+        ),
+        (
+            &["run", "smoke", "--threads", "1025"],
+            &["1025 is not in 0..=1024"],
+        ),
+        (
+            &["run", "smoke", "--format", "xml"],
+            &["'xml'", "text, json"],
+        ),
+        (
+            &["run", "smoke", "--keep", "0"],
+            &["found \"0\"; allowed: all, none, or a number"],
+        ),
+        (
+            &["run", "smoke", "--keep", "some"],
+            &["found \"some\"; allowed: all, none"],
+        ),
+        (&["resume"], &["<RUN_DIR>"]),
+        (&["evaluate", "smoke"], &["--tree <TREE>"]),
+        (
+            &["evaluate", "smoke", "--tree", "x", "--repeats", "0"],
+            &["0 is not in 1..=100000"],
+        ),
+        (
+            &["evaluate", "smoke", "--tree", "x", "--banks", "0"],
+            &["0 is not in 1..=10000"],
+        ),
+        (
+            &["evaluate", "smoke", "--tree", "x", "--trials", "0"],
+            &["0 is not in 1..=100000"],
+        ),
+        (&["tree", "diff", "x"], &["<B>"]),
+        (&["completions", "cmd"], &["'cmd'", "bash"]),
+    ] {
+        let said = refused_with(2, program().args(arguments));
+        assert_says(&said, parts);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn arguments_that_are_no_text_are_refused() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+
+    let bytes = OsStr::from_bytes(b"\xff\xfe\x1b[31m");
+    refused_with(2, program().arg("run").arg(bytes));
+    refused_with(2, program().arg(bytes));
+    // A path may be any bytes.
+    refused_with(1, program().arg("resume").arg(bytes));
+}
