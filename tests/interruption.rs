@@ -28,6 +28,7 @@ use tempfile::TempDir;
 const LONGER: &[&str] = &[
     "evolution.selection=random",
     "evolution.trial_step_limit=500",
+    "evolution.generation_limit=12",
     "evolution.population_size=16",
     concat!(
         r#"evolution.initial_population=["(Root Wander ApproachBattery ApproachNest)","#,

@@ -78,7 +78,7 @@ fn a_checkpoint_that_is_none_is_refused() {
     let says = |bytes: &[u8]| victim.says_with("checkpoint.json", bytes);
     let file = "checkpoint.json: ";
     assert_says(
-        &says(whole[..whole.len() / 2].as_bytes()),
+        &says(&whole.as_bytes()[..whole.len() / 2]),
         &[file, "line 1, column", "EOF"],
     );
     assert_says(&says(b""), &[file, "line 1, column 0", "EOF"]);
@@ -317,7 +317,7 @@ fn an_event_log_that_is_not_of_the_checkpoint_is_refused() {
     let says = |bytes: &[u8]| victim.says_with("events.jsonl", bytes);
     let allowed = "allowed: a file that begins with the ";
     let shorter = whole.len() - 200;
-    let said = says(whole[..shorter].as_bytes());
+    let said = says(&whole.as_bytes()[..shorter]);
     assert_says(
         &said,
         &[
