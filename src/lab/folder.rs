@@ -113,7 +113,19 @@ impl FromStr for Keep {
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
-    _lock: File,
+    _lock: Lock,
+}
+
+/// The lock of a run folder. It is given up by name: closing the file would leave it to
+/// a child that another thread of the process is about to start, for a moment.
+#[derive(Debug)]
+struct Lock(File);
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // A lock that cannot be given up goes with its file.
+        let _ = self.0.unlock();
+    }
 }
 
 impl RunFolder {
@@ -300,7 +312,7 @@ fn temporary(parent: &Path) -> Result<TempDir, FolderError> {
     made.map_err(|error| io_error(parent, error))
 }
 
-fn lock(folder: &Path) -> Result<File, FolderError> {
+fn lock(folder: &Path) -> Result<Lock, FolderError> {
     let path = folder.join("lock");
     let file = OpenOptions::new()
         .create(true)
@@ -309,7 +321,7 @@ fn lock(folder: &Path) -> Result<File, FolderError> {
         .open(&path)
         .map_err(|error| io_error(&path, error))?;
     match file.try_lock() {
-        Ok(()) => Ok(file),
+        Ok(()) => Ok(Lock(file)),
         Err(TryLockError::WouldBlock) => Err(FolderError::InUse {
             path: folder.display().to_string(),
         }),
