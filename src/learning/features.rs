@@ -8,21 +8,29 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::exponential::exponentials;
-use super::linear::padded;
+use super::linear::{padded, total};
 use crate::worlds::{Axis, Catalogue, FeatureMap, MapId};
 
-/// Axes are taken together as long as they have no more Gaussians than this: enough
-/// to fill a vector, few enough to save exponentials.
-const GROUP: usize = 8;
+/// Gaussians that are computed at once. Axes are taken together as long as they have
+/// no more than this many: enough to fill a vector, few enough to save exponentials.
+const LANES: usize = 8;
 
-/// What one input adds to the exponents of all Gaussians of a grid.
+/// What one input adds to the exponents of eight Gaussians.
 #[derive(Clone, Debug)]
 struct Term {
     input: usize,
-    /// In whole lanes.
-    centres: Vec<f32>,
-    /// -1 / (2 sigma^2), or 0 for a Gaussian over other inputs.
-    exponents: Vec<f32>,
+    /// Infinity where there is no Gaussian.
+    centres: [f32; LANES],
+    /// -1 / (2 sigma^2).
+    exponent: f32,
+}
+
+/// Gaussians over the axes of a group, the last one varying fastest.
+#[derive(Clone, Debug)]
+struct Group {
+    size: usize,
+    /// For every eight Gaussians one term an axis.
+    terms: Vec<Vec<Term>>,
 }
 
 /// A feature map, prepared.
@@ -32,10 +40,8 @@ struct Grid {
     width: usize,
     /// The map whose features the grid starts from, and their number.
     base: Option<(MapId, usize)>,
-    /// The Gaussians are those of groups of the remaining axes, the group varying
-    /// fastest first: their numbers.
-    groups: Vec<usize>,
-    terms: Vec<Term>,
+    /// The remaining axes in groups, the group varying fastest first.
+    groups: Vec<Group>,
 }
 
 /// Computes features from inputs.
@@ -48,7 +54,7 @@ pub struct Encoder {
 #[derive(Clone, Debug)]
 pub struct Features {
     inputs: Vec<f32>,
-    /// Room for the Gaussians of one map, in whole lanes.
+    /// Room for the Gaussians of one map, each group in whole lanes.
     gaussians: Vec<f32>,
     maps: Vec<Vec<f32>>,
     /// One bit a map.
@@ -74,7 +80,10 @@ impl Encoder {
     /// Room for the features of a state.
     #[must_use]
     pub fn features(&self) -> Features {
-        let gaussians = self.grids.iter().map(|grid| grid.gaussians());
+        let gaussians = self.grids.iter().map(|grid| {
+            let lanes = grid.groups.iter().map(Group::lanes);
+            lanes.sum()
+        });
         Features {
             inputs: Vec::new(),
             gaussians: vec![0.0; gaussians.max().unwrap_or(0)],
@@ -136,58 +145,80 @@ impl Grid {
         let base = maps.iter().enumerate().filter(ends_in);
         let base = base.max_by_key(|(_, other)| other.axes.len());
         let own = map.axes.len() - base.map_or(0, |(_, other)| other.axes.len());
-        let mut grid = Self {
-            width: padded(map.width()),
-            base: base.map(|(index, other)| (MapId(index as u8), other.width())),
-            groups: Vec::new(),
-            terms: Vec::new(),
-        };
+        let mut groups = Vec::new();
         let mut axes = &map.axes[..own];
         while !axes.is_empty() {
-            let size = |count: usize| -> usize {
-                let group = &axes[axes.len() - count..];
-                group.iter().map(|axis| axis.centres).product()
-            };
-            let fits = |&count: &usize| count == 1 || size(count) <= GROUP;
+            let group = |count| &axes[axes.len() - count..];
+            let fits = |&count: &usize| count == 1 || size(group(count)) <= LANES;
             let count = (1..=axes.len()).take_while(fits).count();
-            let (others, group) = axes.split_at(axes.len() - count);
-            grid.add(group);
-            axes = others;
+            groups.push(Group::new(group(count)));
+            axes = &axes[..axes.len() - count];
         }
-        let lanes = grid.gaussians();
-        for term in &mut grid.terms {
-            term.centres.resize(lanes, 0.0);
-            term.exponents.resize(lanes, 0.0);
+        Self {
+            width: padded(map.width()),
+            base: base.map(|(index, other)| (MapId(index as u8), other.width())),
+            groups,
         }
-        grid
     }
+}
 
-    /// Number of Gaussians, padded to whole vectors.
-    fn gaussians(&self) -> usize {
-        self.groups.iter().sum::<usize>().next_multiple_of(GROUP)
-    }
+/// Number of Gaussians on the grid of some axes.
+fn size(axes: &[Axis]) -> usize {
+    axes.iter().map(|axis| axis.centres).product()
+}
 
-    /// Adds the Gaussians of a group of axes.
-    fn add(&mut self, group: &[Axis]) {
-        let before: usize = self.groups.iter().sum();
-        let size = group.iter().map(|axis| axis.centres).product();
-        let mut block = size;
-        for axis in group {
-            block /= axis.centres;
-            let centre = |place| (place / block % axis.centres) as f32;
-            let spacing = 1.0 / (axis.centres - 1) as f32;
-            let mut term = Term {
-                input: axis.input,
-                centres: vec![0.0; before],
-                exponents: vec![0.0; before],
+impl Group {
+    fn new(axes: &[Axis]) -> Self {
+        let size = size(axes);
+        let term = |first: usize, axis: usize| {
+            let period: usize = self::size(&axes[axis + 1..]);
+            let axis = &axes[axis];
+            let centre = |gaussian: usize| match gaussian {
+                _ if gaussian >= size => f32::INFINITY,
+                _ => (gaussian / period % axis.centres) as f32 / (axis.centres - 1) as f32,
             };
-            let centres = (0..size).map(|place| centre(place) * spacing);
-            term.centres.extend(centres);
-            let exponent = (-0.5 / (axis.sigma * axis.sigma)) as f32;
-            term.exponents.resize(before + size, exponent);
-            self.terms.push(term);
+            Term {
+                input: axis.input,
+                centres: std::array::from_fn(|lane| centre(first + lane)),
+                exponent: (-0.5 / (axis.sigma * axis.sigma)) as f32,
+            }
+        };
+        let terms = (0..size).step_by(LANES);
+        Self {
+            size,
+            terms: terms
+                .map(|first| (0..axes.len()).map(|axis| term(first, axis)).collect())
+                .collect(),
         }
-        self.groups.push(size);
+    }
+
+    /// Number of Gaussians, padded to whole lanes.
+    fn lanes(&self) -> usize {
+        self.terms.len() * LANES
+    }
+
+    /// Computes the Gaussians and returns their sum.
+    #[inline(always)]
+    fn evaluate<S: Simd>(&self, simd: S, inputs: &[f32], gaussians: &mut [f32]) -> f32 {
+        let mut sums = [simd.splat_f32s(0.0); LANES];
+        let lanes = gaussians.as_chunks_mut::<LANES>().0;
+        for (lanes, terms) in lanes.iter_mut().zip(&self.terms) {
+            let registers = S::as_mut_simd_f32s(lanes).0.iter_mut().enumerate();
+            for (register, gaussians) in registers {
+                let mut exponents = simd.splat_f32s(0.0);
+                for term in terms {
+                    let input = simd.splat_f32s(inputs[term.input]);
+                    let centres = S::as_simd_f32s(&term.centres).0[register];
+                    let offset = simd.sub_f32s(input, centres);
+                    let square = simd.mul_f32s(offset, offset);
+                    let exponent = simd.splat_f32s(term.exponent);
+                    exponents = simd.add_f32s(exponents, simd.mul_f32s(square, exponent));
+                }
+                *gaussians = exponentials(simd, exponents);
+                sums[register] = simd.add_f32s(sums[register], *gaussians);
+            }
+        }
+        total(simd, &mut sums[..LANES / S::F32_LANES])
     }
 }
 
@@ -207,62 +238,38 @@ impl WithSimd for Compute<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { grid, out, .. } = self;
-        grid.evaluate(simd, self.inputs, self.gaussians);
-        // One division normalises along all axes.
-        let scale = 1.0 / grid.sum(self.gaussians);
-        let Some((&size, groups)) = grid.groups.split_first() else {
+        let mut sum = 1.0;
+        let mut rest = &mut *self.gaussians;
+        for group in &grid.groups {
+            let (gaussians, others) = rest.split_at_mut(group.lanes());
+            sum *= group.evaluate(simd, self.inputs, gaussians);
+            rest = others;
+        }
+        let Some((group, groups)) = grid.groups.split_first() else {
             return;
         };
-        let (first, mut rest) = self.gaussians.split_at(size);
-        let mut width = size;
+        // One division normalises along all axes.
+        let scale = 1.0 / sum;
+        let (gaussians, mut rest) = self.gaussians.split_at(group.lanes());
+        let gaussians = &gaussians[..group.size];
+        let mut width = group.size;
         if let Some(base) = self.base {
+            let mut out = &mut *out;
+            for gaussian in gaussians {
+                let (block, others) = out.split_at_mut(base.len());
+                scaled(simd, block, base, gaussian * scale);
+                out = others;
+            }
             width *= base.len();
-            for (block, &factor) in out.chunks_exact_mut(base.len()).zip(first) {
-                scaled(simd, block, base, factor * scale);
-            }
         } else {
-            scaled(simd, &mut out[..size], first, scale);
+            scaled(simd, &mut out[..width], gaussians, scale);
         }
-        for &size in groups {
-            let (factors, others) = rest.split_at(size);
-            extend(simd, out, width, factors);
-            width *= size;
+        for group in groups {
+            let (gaussians, others) = rest.split_at(group.lanes());
+            extend(simd, out, width, &gaussians[..group.size]);
+            width *= group.size;
             rest = others;
         }
-    }
-}
-
-impl Grid {
-    /// The Gaussians of the inputs.
-    #[inline(always)]
-    fn evaluate<S: Simd>(&self, simd: S, inputs: &[f32], gaussians: &mut [f32]) {
-        let lanes = self.gaussians();
-        let registers = S::as_mut_simd_f32s(&mut gaussians[..lanes]).0;
-        for (register, gaussians) in registers.iter_mut().enumerate() {
-            let mut exponents = simd.splat_f32s(0.0);
-            for term in &self.terms {
-                let input = simd.splat_f32s(inputs[term.input]);
-                let centre = S::as_simd_f32s(&term.centres).0[register];
-                let exponent = S::as_simd_f32s(&term.exponents).0[register];
-                let offset = simd.sub_f32s(input, centre);
-                let square = simd.mul_f32s(offset, offset);
-                exponents = simd.add_f32s(exponents, simd.mul_f32s(square, exponent));
-            }
-            *gaussians = exponentials(simd, exponents);
-        }
-    }
-
-    /// The sum of all products of one Gaussian of each group.
-    #[inline(always)]
-    fn sum(&self, gaussians: &[f32]) -> f32 {
-        let mut rest = gaussians;
-        let mut product = 1.0;
-        for &size in &self.groups {
-            let (group, others) = rest.split_at(size);
-            product *= group.iter().sum::<f32>();
-            rest = others;
-        }
-        product
     }
 }
 

@@ -153,7 +153,14 @@ fn dot<S: Simd>(simd: S, parameters: &[f32], features: &[f32]) -> f32 {
             *sum = simd.add_f32s(*sum, simd.mul_f32s(*p, *f));
         }
     }
-    let mut width = registers::<S>();
+    total(simd, &mut sums[..registers::<S>()])
+}
+
+/// The sum over all lanes of some registers, a power of two of them, added in a fixed
+/// tree.
+#[inline(always)]
+pub(super) fn total<S: Simd>(simd: S, sums: &mut [S::f32s]) -> f32 {
+    let mut width = sums.len();
     while width > 1 {
         width /= 2;
         for register in 0..width {
