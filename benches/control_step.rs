@@ -2,6 +2,8 @@
 //!
 //! The hierarchy is the complete one of Thesis Figure 4.2; one element is one step.
 
+#![allow(clippy::expect_used)]
+
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};

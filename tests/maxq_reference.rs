@@ -188,7 +188,6 @@ fn switches_work_together() {
 }
 
 #[test]
-#[ignore = "fails: V(a*, s) is read from before the primitive subtask learned in s"]
 fn the_misprint_is_followed_while_primitive_subtasks_learn() {
     let settings = [
         "learning.completion_bootstrap=as_printed",

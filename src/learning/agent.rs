@@ -64,7 +64,8 @@ pub struct Agent<'r, W: World> {
     before: Situation,
     log: Log<W::Percept>,
     stack: Vec<Frame>,
-    /// gamma^N for N = 0, 1, ...
+    step_limit: u32,
+    /// gamma^N for N = 0, 1, ... up to the step limit.
     discounts: Vec<f32>,
     scratch: Vec<f32>,
 }
@@ -116,6 +117,7 @@ impl<'r, W: World> Agent<'r, W> {
             before: situation.clone(),
             now: situation,
             stack: Vec::new(),
+            step_limit,
             discounts: discounts
                 .into_iter()
                 .map(|discount| discount as f32)
@@ -132,7 +134,8 @@ impl<'r, W: World> Agent<'r, W> {
         (hierarchy, self.mind.skills)
     }
 
-    /// Runs a whole trial of at most `step_limit` time steps.
+    /// Runs a whole trial of at most `step_limit` time steps; no more than the agent was
+    /// made ready for.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -143,10 +146,11 @@ impl<'r, W: World> Agent<'r, W> {
         rng: &mut Stream,
         gate: &Gate,
     ) -> Result<Trial<W::State>, Stopped> {
+        let step_limit = step_limit.min(self.step_limit);
         let mut trial = self.begin(start, rng);
         while !trial.done && trial.steps < step_limit {
             self.advance(&mut trial, step_limit, rng, &mut ());
-            if trial.steps % Gate::STRIDE == 0 {
+            if trial.steps.is_multiple_of(Gate::STRIDE) {
                 gate.pass(Gate::STRIDE)?;
             }
         }
@@ -174,7 +178,8 @@ impl<'r, W: World> Agent<'r, W> {
 
     /// One time step: choose down to an action, execute it, learn from where it led.
     ///
-    /// When the trial reaches `step_limit` all subtasks return as they are: that is a
+    /// When the trial reaches `step_limit`, or the limit that the agent was made ready
+    /// for, all subtasks return as they are: that is a
     /// truncation, not a terminal state.
     pub fn advance(
         &mut self,
@@ -208,8 +213,10 @@ impl<'r, W: World> Agent<'r, W> {
             let features = self.mind.encoder.encode(map, &mut self.before.features);
             let step = self.model.learning_rate as f32 * (reward - value);
             self.mind.skills.at_mut(skill).learn(action, features, step);
+            self.before.forget_values();
         }
-        self.ascend(trial.steps >= step_limit, observer);
+        let limit = step_limit.min(self.step_limit);
+        self.ascend(trial.steps >= limit, observer);
     }
 
     fn perceive(&mut self, state: &W::State) {

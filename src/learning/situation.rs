@@ -86,6 +86,11 @@ impl Situation {
         self.state += 1;
     }
 
+    /// Forgets all values, not the features: the primitive subtasks have changed.
+    pub(super) fn forget_values(&mut self) {
+        self.state += 1;
+    }
+
     /// Forgets what changes with the completion functions for `child`: these, and
     /// the values of all nodes above it.
     #[inline]
