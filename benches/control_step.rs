@@ -2,6 +2,11 @@
 //!
 //! The hierarchy is the complete one of Thesis Figure 4.2; one element is one step.
 
+#![expect(
+    clippy::expect_used,
+    reason = "a benchmark that cannot be set up should fail"
+)]
+
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};

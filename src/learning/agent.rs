@@ -146,7 +146,7 @@ impl<'r, W: World> Agent<'r, W> {
         let mut trial = self.begin(start, rng);
         while !trial.done && trial.steps < step_limit {
             self.advance(&mut trial, step_limit, rng, &mut ());
-            if trial.steps % Gate::STRIDE == 0 {
+            if trial.steps.is_multiple_of(Gate::STRIDE) {
                 gate.pass(Gate::STRIDE)?;
             }
         }
