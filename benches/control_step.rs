@@ -2,7 +2,10 @@
 //!
 //! The hierarchy is the complete one of Thesis Figure 4.2; one element is one step.
 
-#![allow(clippy::expect_used)]
+#![expect(
+    clippy::expect_used,
+    reason = "a benchmark that cannot be set up should fail"
+)]
 
 use std::hint::black_box;
 

@@ -24,7 +24,7 @@ const POLYNOMIAL: [f32; 6] = [
     8.333_452e-3,
     4.166_579_6e-2,
     1.666_666_5e-1,
-    0.5,
+    5e-1,
 ];
 
 /// The exponentials of some numbers, to within two units in the last place between
