@@ -117,7 +117,7 @@ impl WorldTask for Evaluate {
         };
         let tree = parse(self.0, experiment.catalogue())?;
         let (workers, gate) = (Workers::new(0)?, Gate::default());
-        let evaluation = evaluate(&experiment, &tree, &protocol, &workers, &gate)?;
+        let evaluation = evaluate(&experiment, &tree, &protocol, &workers, &gate, |_| {})?;
         let error = evaluation.standard_error.unwrap_or(f64::NAN);
         Ok([
             evaluation.mean,

@@ -7,6 +7,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::output::{self, Done, Failure, Format};
+use super::progress::bar;
 use super::signals::Caught;
 use super::source::Source;
 use crate::evolution::{Experiment, Workers, read_tree};
@@ -108,7 +109,11 @@ impl WorldTask for Task {
         };
         let workers = Workers::new(usize::from(self.args.threads))?;
         let started = Instant::now();
-        let evaluation = evaluate(&experiment, &tree, &protocol, &workers, &self.gate)?;
+        let bar = bar(self.args.repeats, true);
+        bar.set_message("repeats");
+        let show = |done| bar.set_position(done as u64);
+        let evaluation = evaluate(&experiment, &tree, &protocol, &workers, &self.gate, show)?;
+        bar.finish_and_clear();
         let computed = self.gate.control_steps() as f64;
         Ok(Report {
             control_steps_per_second: computed / started.elapsed().as_secs_f64(),

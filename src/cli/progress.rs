@@ -1,4 +1,4 @@
-//! The progress of a run on a terminal.
+//! Progress on a terminal.
 
 use std::io::{IsTerminal, stderr};
 use std::time::Duration;
@@ -36,7 +36,8 @@ pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize, sh
     bar.finish_and_clear();
 }
 
-fn bar(length: u64, shown: bool) -> ProgressBar {
+/// A bar on standard error, drawn only where that is a terminal and `shown` says so.
+pub(super) fn bar(length: u64, shown: bool) -> ProgressBar {
     let target = match shown && stderr().is_terminal() {
         true => ProgressDrawTarget::stderr_with_hz(5),
         false => ProgressDrawTarget::hidden(),

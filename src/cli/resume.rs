@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::output::Done;
+use super::output::{self, Done};
 use super::run::{How, follow};
 use super::signals::Caught;
-use crate::lab::resume;
+use crate::lab::{Invocation, RunFolder, resume};
 
 /// Go on with a run that was stopped, or died.
 ///
@@ -27,6 +27,15 @@ pub(super) struct Args {
 /// Carries out the command.
 pub(super) fn main(args: &Args) -> Done {
     let signals = Caught::now()?;
+    let manifest = RunFolder::read_manifest(&args.run_dir)?;
+    let (then, now) = (manifest.started, Invocation::now(0));
+    if (&then.version, &then.commit) != (&now.version, &now.commit) {
+        output::message(&format!(
+            "note: the run was started by version {} ({}), this is {} ({}): the bits may differ from \
+             those of a run never interrupted",
+            then.version, then.commit, now.version, now.commit
+        ));
+    }
     let run = resume(&args.run_dir, args.generations, &args.how.options(false))?;
     follow(run, signals, &args.how)
 }

@@ -1,5 +1,7 @@
 //! How good one structure is: fresh hierarchies of it learn and are scored.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use serde::Serialize;
 
 use crate::evolution::{Experiment, Workers};
@@ -52,7 +54,7 @@ pub struct Evaluation {
     pub control_steps: u64,
 }
 
-/// Evaluates the structure `tree`.
+/// Evaluates the structure `tree`; `progress` is told how many repeats are done.
 ///
 /// # Errors
 /// When the gate is stopped.
@@ -62,13 +64,17 @@ pub fn evaluate<W: World>(
     protocol: &Protocol,
     workers: &Workers,
     gate: &Gate,
+    progress: impl Fn(usize) + Sync,
 ) -> Result<Evaluation, Stopped> {
     let banks = (0..protocol.banks)
         .map(|bank| experiment.train(protocol.seed, bank as u64, workers, gate))
         .collect::<Result<Vec<_>, _>>()?;
+    let done = AtomicUsize::new(0);
     let repeats = workers.map((0..protocol.repeats).collect(), |repeat| {
         let bank = repeat % protocol.banks;
-        one_repeat(experiment, tree, protocol, repeat, &banks[bank], gate)
+        let scored = one_repeat(experiment, tree, protocol, repeat, &banks[bank], gate)?;
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+        Ok(scored)
     })?;
     let control_steps = repeats.iter().map(|(_, steps)| steps).sum();
     let repeats: Vec<_> = repeats.into_iter().map(|(repeat, _)| repeat).collect();
