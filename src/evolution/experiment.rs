@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::parallel::Workers;
 use crate::hierarchy::{self, TextError, Tree, TypingError};
-use crate::learning::{Encoder, Gate, Hierarchy, Skills, Stopped, train};
+use crate::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Stopped, train};
 use crate::random::{Purpose, stream};
 use crate::scenario::Scenario;
 use crate::worlds::{Catalogue, World};
@@ -76,6 +76,21 @@ impl<W: World> Experiment<W> {
         let temperature = learning.initial_temperature as f32;
         let initial = learning.initial_parameter as f32;
         Hierarchy::new(tree, self.catalogue(), temperature, initial)
+    }
+
+    /// An agent with a hierarchy and the primitive subtasks, ready for the scenario's trials.
+    #[must_use]
+    pub fn agent(&self, hierarchy: Hierarchy, skills: Skills) -> Agent<'_, W> {
+        let learning = &self.scenario.learning;
+        let limit = self.scenario.evolution.trial_step_limit;
+        Agent::new(
+            &self.world,
+            &self.encoder,
+            learning,
+            hierarchy,
+            skills,
+            limit,
+        )
     }
 
     /// Trains the primitive subtasks; `bank` numbers independent trainings.

@@ -5,7 +5,7 @@ use rand::seq::SliceRandom;
 use super::experiment::Experiment;
 use super::individual::{Individual, Origin};
 use super::record::TrialRecord;
-use crate::learning::{Agent, Gate, Hierarchy, Skills, Stopped};
+use crate::learning::{Gate, Hierarchy, Skills, Stopped};
 use crate::random::{Purpose, Stream, stream};
 use crate::worlds::World;
 
@@ -73,16 +73,9 @@ pub(super) fn live<W: World>(
     generation: u64,
     gate: &Gate,
 ) -> Result<Life, Stopped> {
-    let Experiment {
-        scenario,
-        world,
-        encoder,
-        ..
-    } = experiment;
-    let limit = scenario.evolution.trial_step_limit;
+    let limit = experiment.scenario.evolution.trial_step_limit;
     let mut rng = stream(seed, generation, individual.id, Purpose::Life);
-    let hierarchy = individual.hierarchy.clone();
-    let mut agent = Agent::new(world, encoder, &scenario.learning, hierarchy, skills, limit);
+    let mut agent = experiment.agent(individual.hierarchy.clone(), skills);
     let mut half = |starts: &[W::Start]| -> Result<Vec<TrialRecord>, Stopped> {
         let order = shuffled(starts.len(), &mut rng);
         let trials = order.into_iter().map(|index| {

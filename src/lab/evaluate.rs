@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::evolution::{Experiment, Workers};
 use crate::hierarchy::{Tree, to_text};
-use crate::learning::{Agent, Gate, Skills, Stopped};
+use crate::learning::{Gate, Skills, Stopped};
 use crate::random::{Purpose, stream};
 use crate::worlds::World;
 
@@ -101,23 +101,10 @@ fn one_repeat<W: World>(
     skills: &Skills,
     gate: &Gate,
 ) -> Result<(Repeat, u64), Stopped> {
-    let Experiment {
-        scenario,
-        world,
-        encoder,
-        ..
-    } = experiment;
-    let limit = scenario.evolution.trial_step_limit;
+    let limit = experiment.scenario.evolution.trial_step_limit;
     let mut rng = stream(protocol.seed, 0, repeat as u64, Purpose::Evaluation);
     let newborn = experiment.newborn(tree.clone());
-    let mut agent = Agent::new(
-        world,
-        encoder,
-        &scenario.learning,
-        newborn,
-        skills.clone(),
-        limit,
-    );
+    let mut agent = experiment.agent(newborn, skills.clone());
     let mut control_steps = 0;
     let mut scored = Repeat {
         steps: Vec::with_capacity(protocol.trials),
@@ -125,7 +112,7 @@ fn one_repeat<W: World>(
         bank: repeat % protocol.banks,
     };
     for trial in 0..protocol.warmup + protocol.trials {
-        let start = world.draw_start(&mut rng);
+        let start = experiment.world.draw_start(&mut rng);
         let over = agent.run_trial(&start, limit, &mut rng, gate)?;
         control_steps += u64::from(over.steps);
         if trial >= protocol.warmup {
