@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use crate::evolution::{Experiment, ExperimentError};
 use crate::scenario::{Scenario, WorldModel};
-use crate::worlds::World;
 use crate::worlds::foraging::{ForagingError, ForagingWorld};
+use crate::worlds::scene::Scenic;
 
 /// Something to be done with the experiment of a scenario, whatever its world.
 pub trait WorldTask {
@@ -13,7 +13,7 @@ pub trait WorldTask {
     type Output;
 
     /// Does it. This is compiled once for each world.
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output;
+    fn carry_out<W: Scenic + 'static>(self, experiment: Experiment<W>) -> Self::Output;
 }
 
 /// Why a scenario cannot be made ready.

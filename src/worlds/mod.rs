@@ -8,6 +8,7 @@
 
 mod catalogue;
 pub mod foraging;
+pub mod scene;
 
 pub use catalogue::{
     Axis, Catalogue, FeatureMap, Kind, MapId, StateType, StateTypeInfo, StateTypes, Subtask,

@@ -39,6 +39,7 @@ mod catalogue;
 mod motion;
 mod probes;
 mod rays;
+mod scene;
 mod sensors;
 
 pub use arena::{Arena, Wall};
@@ -137,6 +138,7 @@ pub struct ForagingWorld {
     radius: f64,
     capture_distance: f64,
     delivery_distance: f64,
+    time_step_s: f64,
     /// Avoid, Wander, Approach battery, Approach nest, Turn.
     primitives: [Primitive; 5],
     /// A pose known to be free, for arenas so crowded that chance finds none.
@@ -166,6 +168,7 @@ impl ForagingWorld {
             radius,
             capture_distance: model.robot.capture_distance_mm,
             delivery_distance: model.robot.delivery_distance_mm,
+            time_step_s: model.time_step_s,
             primitives,
             some_pose: Pose {
                 position: Point2::origin(),
@@ -421,7 +424,7 @@ impl World for ForagingWorld {
         if Self::is_target_seeking(primitive) {
             self.angle_probes()
         } else {
-            self.proximity_probes()
+            self.proximity_probes(None)
         }
     }
 

@@ -40,7 +40,11 @@ impl ForagingWorld {
             .collect()
     }
 
-    pub(super) fn proximity_probes(&self) -> Vec<Probe<[f32; INPUTS]>> {
+    /// Typical surroundings, with this reading of a target.
+    pub(super) fn proximity_probes(
+        &self,
+        target: Option<TargetReading>,
+    ) -> Vec<Probe<[f32; INPUTS]>> {
         let [near, far] = self.sensors.proximity_range;
         BLOCKED
             .iter()
@@ -52,7 +56,7 @@ impl ForagingWorld {
                     readings: named
                         .map(|(i, &mm)| (format!("proximity_{}_mm", i + 1), f64::from(mm)))
                         .collect(),
-                    percept: self.inputs(&proximity_mm, None),
+                    percept: self.inputs(&proximity_mm, target),
                 }
             })
             .collect()

@@ -31,7 +31,7 @@ pub(super) struct Sighting {
 #[derive(Clone, Debug)]
 pub(super) struct Sensors {
     /// Directions of the proximity rays in the frame of the robot.
-    rays: [Vector2<f64>; PROXIMITY_SENSORS],
+    pub(super) rays: [Vector2<f64>; PROXIMITY_SENSORS],
     body_radius: f64,
     pub(super) proximity_range: [f32; 2],
     pub(super) vision_half_angle_deg: f32,

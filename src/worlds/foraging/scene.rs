@@ -1,0 +1,249 @@
+//! What there is to see of the foraging task.
+
+use nalgebra::{Point2, Vector2};
+
+use super::catalogue::INPUTS;
+use super::motion::rotate;
+use super::{
+    APPROACH_BATTERY, APPROACH_NEST, BATTERY_VISIBLE, ForagingState, ForagingWorld, NEST_VISIBLE,
+    Pose, TURN, TargetReading, Task,
+};
+use crate::random::Stream;
+use crate::worlds::scene::{Mark, Reading, Role, Scale, Scenery, Scenic, Snapshot, Sweep, View};
+use crate::worlds::{Kind, Probe, StateType, SubtaskId, World};
+
+/// Variants of [`Scenic::state_at`].
+const VARIANTS: [&str; 2] = ["empty-handed", "carrying"];
+
+/// Angles and distances of a sweep.
+const ANGLES: usize = 25;
+const DISTANCES: usize = 8;
+/// A distance for sweeps that do not vary it, in millimetres.
+const SOME_DISTANCE_MM: f32 = 1000.0;
+
+impl Scenic for ForagingWorld {
+    fn scenery(&self) -> Scenery {
+        let arena = &self.arena;
+        let ends = |wall: &super::Wall| [wall.start, wall.end()].map(|end| [end.x, end.y]);
+        Scenery {
+            extent: arena.size.into(),
+            unit: "mm",
+            grid: None,
+            walls: arena.walls.iter().map(ends).collect(),
+            places: vec![Mark {
+                role: Role::Goal,
+                label: String::from("nest"),
+                at: arena.nest.into(),
+            }],
+            time_step_s: Some(self.time_step_s),
+        }
+    }
+
+    fn snapshot(&self, state: &ForagingState) -> Snapshot {
+        let ForagingState { pose, task, .. } = *state;
+        let seen = self.see_target(&pose, task);
+        let carried = match task {
+            Task::Carrying(battery) => Some(battery),
+            Task::EmptyHanded | Task::Delivered(_) => None,
+        };
+        let gone = match task {
+            Task::EmptyHanded => None,
+            Task::Carrying(battery) | Task::Delivered(battery) => Some(battery),
+        };
+        let batteries = self.arena.batteries.iter().enumerate();
+        Snapshot {
+            at: pose.position.into(),
+            radius: self.radius,
+            heading: Some(libm::atan2(pose.heading.y, pose.heading.x)),
+            carries: carried.map(battery_label),
+            marks: batteries
+                .filter(|&(index, _)| Some(index) != gone)
+                .map(|(index, at)| Mark {
+                    role: Role::Object,
+                    label: battery_label(index),
+                    at: (*at).into(),
+                })
+                .collect(),
+            view: Some(View {
+                half_angle: f64::from(self.sensors.vision_half_angle_deg).to_radians(),
+                range: self.sensors.vision_range,
+            }),
+            sees: seen.map(|(target, _)| self.arena.target(target).into()),
+            rays: self.measured_rays(state),
+            readings: self.readings(state),
+            state_type: self.state_type(state),
+        }
+    }
+
+    fn position(&self, state: &ForagingState) -> [f64; 2] {
+        state.pose.position.into()
+    }
+
+    fn variants(&self) -> Vec<String> {
+        VARIANTS.map(String::from).into()
+    }
+
+    fn state_at(
+        &self,
+        at: [f64; 2],
+        heading: f64,
+        variant: usize,
+        rng: &mut Stream,
+    ) -> Option<ForagingState> {
+        let position = Point2::from(at);
+        let size = self.arena.size;
+        let inside = at[0] >= 0.0 && at[0] <= size.x && at[1] >= 0.0 && at[1] <= size.y;
+        if !inside || !self.arena.is_free(position, self.radius) {
+            return None;
+        }
+        let task = match variant {
+            0 => Task::EmptyHanded,
+            _ => Task::Carrying(0),
+        };
+        let (sin, cos) = libm::sincos(heading);
+        let pose = Pose {
+            position,
+            heading: Vector2::new(cos, sin),
+        };
+        Some(self.sensed(pose, task, rng))
+    }
+
+    fn sweeps(&self, subtask: SubtaskId, state_type: StateType) -> Vec<Sweep<[f32; INPUTS]>> {
+        let catalogue = self.catalogue();
+        let described = catalogue.subtask(subtask);
+        let sees_target = matches!(state_type, BATTERY_VISIBLE | NEST_VISIBLE);
+        match (&described.kind, subtask) {
+            (_, APPROACH_BATTERY | APPROACH_NEST | TURN) => vec![self.angle_sweep()],
+            (Kind::Composite { .. }, _) if self.looks_at_target(subtask) && sees_target => {
+                vec![self.pattern_sweep(state_type), self.target_sweep()]
+            }
+            _ => vec![self.pattern_sweep(state_type)],
+        }
+    }
+}
+
+impl ForagingWorld {
+    /// Whether the values of a subtask depend on the target.
+    fn looks_at_target(&self, subtask: SubtaskId) -> bool {
+        let map = self.catalogue.subtask(subtask).map;
+        let axes = &self.catalogue.maps[map.index()].axes;
+        axes.iter().any(|axis| axis.input == super::ANGLE)
+    }
+
+    /// Each proximity ray from the body's surface to where its reading puts the wall.
+    fn measured_rays(&self, state: &ForagingState) -> Vec<[[f64; 2]; 2]> {
+        let directions = self.sensors.rays.iter().zip(state.proximity_mm);
+        directions
+            .map(|(&ray, reading)| {
+                let direction = rotate(ray, state.pose.heading);
+                let reach = [self.radius, self.radius + f64::from(reading)];
+                reach.map(|length| (state.pose.position + direction * length).into())
+            })
+            .collect()
+    }
+
+    fn readings(&self, state: &ForagingState) -> Vec<Reading> {
+        let reading = |name: String, value: Option<f32>| Reading {
+            name,
+            value: value.map(f64::from),
+        };
+        let angles = self.sensors.rays.map(|ray| {
+            let angle = libm::atan2(ray.y, ray.x).to_degrees();
+            // A rounding error would show as -0.
+            angle.round() as i64
+        });
+        let proximity = angles.iter().zip(state.proximity_mm);
+        let mut readings: Vec<_> = proximity
+            .map(|(angle, mm)| reading(format!("proximity_{angle:+}deg_mm"), Some(mm)))
+            .collect();
+        let target = state.target;
+        readings.push(reading(
+            String::from("target_angle_deg"),
+            target.map(|t| t.angle_deg),
+        ));
+        readings.push(reading(
+            String::from("target_distance_mm"),
+            target.map(|t| t.distance_mm),
+        ));
+        readings
+    }
+
+    /// Typical surroundings; with a target straight ahead in states that see one.
+    fn pattern_sweep(&self, state_type: StateType) -> Sweep<[f32; INPUTS]> {
+        let ahead = TargetReading {
+            angle_deg: 0.0,
+            distance_mm: SOME_DISTANCE_MM,
+        };
+        let sees_target = matches!(state_type, BATTERY_VISIBLE | NEST_VISIBLE);
+        let probes = self.proximity_probes(sees_target.then_some(ahead));
+        Sweep {
+            across: Scale::Cases {
+                name: String::from("surroundings"),
+                labels: probes.iter().map(|probe| probe.label.clone()).collect(),
+            },
+            down: None,
+            probes,
+        }
+    }
+
+    fn angle_sweep(&self) -> Sweep<[f32; INPUTS]> {
+        let angles = self.angles();
+        let probes = angles
+            .iter()
+            .map(|&angle| self.target_probe(angle, SOME_DISTANCE_MM));
+        Sweep {
+            probes: probes.collect(),
+            across: scale("angle_deg", &angles),
+            down: None,
+        }
+    }
+
+    /// Angle and distance of the target, in the open.
+    fn target_sweep(&self) -> Sweep<[f32; INPUTS]> {
+        let angles = self.angles();
+        let step = self.sensors.vision_range as f32 / DISTANCES as f32;
+        let distances: Vec<_> = (1..=DISTANCES).map(|i| i as f32 * step).collect();
+        let row = |&distance: &f32| {
+            let probe = move |&angle: &f32| self.target_probe(angle, distance);
+            angles.iter().map(probe).collect::<Vec<_>>()
+        };
+        Sweep {
+            probes: distances.iter().flat_map(row).collect(),
+            across: scale("angle_deg", &angles),
+            down: Some(scale("distance_mm", &distances)),
+        }
+    }
+
+    fn angles(&self) -> Vec<f32> {
+        let half = self.sensors.vision_half_angle_deg;
+        let step = 2.0 * half / (ANGLES - 1) as f32;
+        (0..ANGLES).map(|i| i as f32 * step - half).collect()
+    }
+
+    fn target_probe(&self, angle_deg: f32, distance_mm: f32) -> Probe<[f32; INPUTS]> {
+        let far = [self.sensors.proximity_range[1]; super::PROXIMITY_SENSORS];
+        let target = TargetReading {
+            angle_deg,
+            distance_mm,
+        };
+        Probe {
+            label: format!("{angle_deg:+.0} deg, {distance_mm:.0} mm"),
+            readings: vec![
+                (String::from("angle_deg"), f64::from(angle_deg)),
+                (String::from("distance_mm"), f64::from(distance_mm)),
+            ],
+            percept: self.inputs(&far, Some(target)),
+        }
+    }
+}
+
+fn battery_label(index: usize) -> String {
+    format!("battery {}", index + 1)
+}
+
+fn scale(name: &str, values: &[f32]) -> Scale {
+    Scale::Quantity {
+        name: name.to_owned(),
+        values: values.iter().copied().map(f64::from).collect(),
+    }
+}
