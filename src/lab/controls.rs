@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
+use serde::{Deserialize, Serialize};
 
 use super::event::Event;
 use crate::learning::Gate;
@@ -12,7 +13,8 @@ use crate::learning::Gate;
 const CHANNEL_CAPACITY: usize = 256;
 
 /// What a run does at the moment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Activity {
     /// It computes.
     Running,
@@ -102,6 +104,11 @@ impl Controls {
         self.desk.requests.1.clone()
     }
 
+    /// The latest progress told.
+    pub(super) fn progress(&self) -> Option<Event> {
+        self.desk.sink.lock().progress.clone()
+    }
+
     /// Tells readers a fact.
     pub(super) fn tell(&self, event: Event) {
         self.desk.sink.send(event);
@@ -159,6 +166,8 @@ struct Sink {
 struct SinkState {
     sender: Option<Sender<Event>>,
     backlog: VecDeque<Event>,
+    /// The latest progress, whether it was taken or not.
+    progress: Option<Event>,
 }
 
 impl Sink {
@@ -166,6 +175,7 @@ impl Sink {
         let state = SinkState {
             sender: Some(sender),
             backlog: VecDeque::new(),
+            progress: None,
         };
         Self {
             state: Mutex::new(state),
@@ -178,8 +188,11 @@ impl Sink {
 
     fn send(&self, event: Event) {
         let mut state = self.lock();
-        if event.is_progress() && !state.backlog.is_empty() {
-            return;
+        if event.is_progress() {
+            state.progress = Some(event.clone());
+            if !state.backlog.is_empty() {
+                return;
+            }
         }
         state.backlog.push_back(event);
         state.flush();

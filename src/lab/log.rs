@@ -129,33 +129,40 @@ pub fn read_events(path: &Path) -> Result<Vec<Event>, LogError> {
     let mut reader = BufReader::new(File::open(path)?);
     let mut events = Vec::new();
     let mut line = Vec::new();
-    loop {
-        line.clear();
-        let read = reader
-            .by_ref()
-            .take(MAX_LINE_BYTES)
-            .read_until(b'\n', &mut line)?;
-        if line.last() != Some(&b'\n') {
-            if read as u64 == MAX_LINE_BYTES {
-                return Err(LogError::Line {
-                    line: events.len() + 1,
-                    message: format!("longer than allowed: {MAX_LINE_BYTES} bytes"),
-                });
-            }
-            return Ok(events);
-        }
-        let event = serde_json::from_slice(&line).map_err(|error| LogError::Line {
-            line: events.len() + 1,
-            message: error.to_string(),
-        })?;
-        if let Event::Started { format, .. } = &event
-            && *format != EVENT_FORMAT
-        {
-            return Err(LogError::Line {
-                line: events.len() + 1,
-                message: format!("format: found {format}; allowed: {EVENT_FORMAT}"),
-            });
-        }
+    while let Some(event) = read_event(&mut reader, &mut line, events.len() + 1)? {
         events.push(event);
     }
+    Ok(events)
+}
+
+/// Reads the event of the next line, whose number is for errors; leaves its bytes in
+/// `line`. `None` at the end, and where a line has no end yet.
+pub(super) fn read_event(
+    reader: &mut impl BufRead,
+    line: &mut Vec<u8>,
+    number: usize,
+) -> Result<Option<Event>, LogError> {
+    let wrong = |message| LogError::Line {
+        line: number,
+        message,
+    };
+    line.clear();
+    let read = reader.take(MAX_LINE_BYTES).read_until(b'\n', line)?;
+    if line.last() != Some(&b'\n') {
+        return match read as u64 == MAX_LINE_BYTES {
+            true => Err(wrong(format!(
+                "longer than allowed: {MAX_LINE_BYTES} bytes"
+            ))),
+            false => Ok(None),
+        };
+    }
+    let event = serde_json::from_slice(line).map_err(|error| wrong(error.to_string()))?;
+    if let Event::Started { format, .. } = &event
+        && *format != EVENT_FORMAT
+    {
+        return Err(wrong(format!(
+            "format: found {format}; allowed: {EVENT_FORMAT}"
+        )));
+    }
+    Ok(Some(event))
 }

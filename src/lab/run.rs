@@ -14,6 +14,7 @@ use super::folder::{FolderError, Keep, RunFolder};
 use super::log::{Log, read_events};
 use super::manifest::{Invocation, MANIFEST_FORMAT, Manifest};
 use super::outcome::{BestIndividual, Outcome};
+use super::pulse::Pulse;
 use super::recorder::{Message, QUEUE_CAPACITY, Recorder};
 use super::run_error::RunError;
 use super::worlds::{WorldTask, with_world};
@@ -297,6 +298,7 @@ impl<W: World> Work<W> {
     fn run(self, log: Log, past: Vec<Event>) -> Result<Outcome, RunError> {
         let started = Instant::now();
         let _closing = Closing(&self.controls);
+        let _pulse = Pulse::start(self.folder.path(), &self.controls);
         let (sender, messages) = bounded(QUEUE_CAPACITY);
         let requests = self.controls.requests();
         let recorder = Recorder {
