@@ -1,17 +1,16 @@
 //! `maxq-lab evaluate`: how good is a structure?
 
-use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::output::{self, Done, Failure, Format};
+use super::answer::answer;
+use super::output::{Done, Failure, Format};
 use super::progress::bar;
-use super::signals::Caught;
 use super::source::Source;
 use crate::evolution::{Experiment, Workers, read_tree};
-use crate::lab::{Evaluation, Protocol, WorldTask, evaluate, with_world};
+use crate::lab::{Evaluation, Protocol, WorldTask, evaluate};
 use crate::learning::Gate;
 use crate::worlds::World;
 
@@ -70,21 +69,8 @@ struct Report {
 
 /// Carries out the command.
 pub(super) fn main(args: Args) -> Done {
-    let scenario = args.source.load()?;
-    let gate = Arc::new(Gate::default());
-    let stopping = Arc::clone(&gate);
-    let ended = Caught::now()?.then(move || stopping.stop())?;
-    let format = args.format;
-    let report = with_world(scenario, Task { args, gate })?;
-    if let Some(code) = ended.exit_code() {
-        return Ok(ExitCode::from(code));
-    }
-    let report = report?;
-    match format {
-        Format::Json => output::json(&report)?,
-        Format::Text => output::text(&describe(&report))?,
-    }
-    Ok(ExitCode::SUCCESS)
+    let (scenario, format) = (args.source.load()?, args.format);
+    answer(scenario, format, |gate| Task { args, gate }, describe)
 }
 
 struct Task {

@@ -3,6 +3,7 @@
 //! Results go to standard output and stay pipeable; messages and progress go to
 //! standard error, progress only where that is a terminal.
 
+mod answer;
 mod check;
 mod evaluate;
 mod manual;

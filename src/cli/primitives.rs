@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::process::ExitCode;
 use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::output::{self, Done, Failure, Format};
-use super::signals::Caught;
+use super::answer::answer;
+use super::output::{Done, Failure, Format};
 use super::source::Source;
 use crate::evolution::{Experiment, Workers};
-use crate::lab::{WorldTask, with_world};
+use crate::lab::WorldTask;
 use crate::learning::Gate;
 use crate::worlds::{Kind, World};
 
@@ -64,21 +63,8 @@ struct Row {
 
 /// Carries out the command.
 pub(super) fn main(args: Args) -> Done {
-    let scenario = args.source.load()?;
-    let gate = Arc::new(Gate::default());
-    let stopping = Arc::clone(&gate);
-    let ended = Caught::now()?.then(move || stopping.stop())?;
-    let format = args.format;
-    let report = with_world(scenario, Task { args, gate })?;
-    if let Some(code) = ended.exit_code() {
-        return Ok(ExitCode::from(code));
-    }
-    let report = report?;
-    match format {
-        Format::Json => output::json(&report)?,
-        Format::Text => output::text(&describe(&report))?,
-    }
-    Ok(ExitCode::SUCCESS)
+    let (scenario, format) = (args.source.load()?, args.format);
+    answer(scenario, format, |gate| Task { args, gate }, describe)
 }
 
 struct Task {

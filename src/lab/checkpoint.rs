@@ -6,12 +6,12 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
-use thiserror::Error;
 
-use crate::evolution::{Experiment, Individual, Origin, State, TreeError, read_tree};
-use crate::hierarchy::to_text;
-use crate::learning::{CompositeValues, Hierarchy, Skill, Skills};
-use crate::scenario::{LearningModel, Scenario, ScenarioError};
+use super::checkpoint_error::CheckpointError;
+use super::population_file::{IndividualFile, PrimitiveFile};
+use crate::evolution::{Experiment, State};
+use crate::learning::Skills;
+use crate::scenario::Scenario;
 use crate::worlds::{Catalogue, World};
 
 /// Version of the checkpoint format.
@@ -23,55 +23,6 @@ pub const MAX_CHECKPOINT_BYTES: u64 = 1 << 30;
 
 /// Largest value of a counter: 10 million control steps a second for 28 years.
 const MAX_COUNT: u64 = 1 << 53;
-
-/// Why a checkpoint cannot be used.
-#[derive(Debug, Error)]
-pub enum CheckpointError {
-    /// It is not the JSON of a checkpoint.
-    #[error("line {}, column {}, at {place}: {source}", .source.line(), .source.column())]
-    Syntax {
-        /// Where in the file.
-        place: String,
-        /// What is wrong there.
-        source: serde_json::Error,
-    },
-    /// It was written by another version of the program.
-    #[error("format: found {found}; allowed: {CHECKPOINT_FORMAT}")]
-    Format {
-        /// The format found.
-        found: u32,
-    },
-    /// Something was changed after it was written.
-    #[error(
-        "crc32: the state has {actual}, the file says {stated}: the file was changed or damaged"
-    )]
-    Checksum {
-        /// Of the state as it is.
-        actual: String,
-        /// As the file states it.
-        stated: String,
-    },
-    /// Its scenario is not valid.
-    #[error("state.scenario: {0}")]
-    Scenario(#[from] ScenarioError),
-    /// A part of it does not fit its scenario.
-    #[error("{place}: {message}")]
-    Misfit {
-        /// Where in the file.
-        place: String,
-        /// What was found and what is allowed.
-        message: String,
-    },
-    /// A learned value is not a number; such a state is not written.
-    #[error(
-        "individual {id}: learning has diverged, a learned value is not finite; allowed: settings \
-         with a smaller learning rate or smaller initial values"
-    )]
-    Diverged {
-        /// The individual.
-        id: u64,
-    },
-}
 
 /// How much of `events.jsonl` belongs to a checkpoint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -105,42 +56,6 @@ pub struct Checkpoint {
     pub events: LogPosition,
     primitives: Vec<PrimitiveFile>,
     individuals: Vec<IndividualFile>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PrimitiveFile {
-    subtask: String,
-    /// Parameters of Q_prim, one vector an action.
-    actions: Vec<Vec<f32>>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct IndividualFile {
-    id: u64,
-    origin: Origin,
-    tree: String,
-    /// In preorder.
-    composites: Vec<CompositeFile>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CompositeFile {
-    subtask: String,
-    temperature: f32,
-    children: Vec<ChildFile>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ChildFile {
-    subtask: String,
-    /// Parameters of C~, one block of features per active state type.
-    c_tilde: Vec<f32>,
-    /// Parameters of C.
-    c: Vec<f32>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -183,10 +98,7 @@ impl Checkpoint {
                 .skills
                 .all()
                 .iter()
-                .map(|skill| PrimitiveFile {
-                    subtask: skill.subtask.name(catalogue).to_owned(),
-                    actions: skill.vectors().map(<[f32]>::to_vec).collect(),
-                })
+                .map(|skill| PrimitiveFile::of(skill, catalogue))
                 .collect(),
             individuals: individuals
                 .map(|individual| IndividualFile::of(individual, catalogue))
@@ -265,7 +177,7 @@ impl Checkpoint {
         let catalogue = experiment.catalogue();
         let evolution = &experiment.scenario.evolution;
         if self.individuals.len() != evolution.population_size {
-            return Err(misfit(
+            return Err(CheckpointError::misfit(
                 "state.individuals",
                 format!(
                     "found {}; allowed: {}, the population_size",
@@ -298,173 +210,24 @@ impl Checkpoint {
         ] {
             if found > MAX_COUNT {
                 let message = format!("found {found}; allowed: 0 to {MAX_COUNT}");
-                return Err(misfit(&format!("state.{name}"), message));
+                return Err(CheckpointError::misfit(&format!("state.{name}"), message));
             }
         }
         Ok(())
     }
 
     fn skills(&self, catalogue: &Catalogue) -> Result<Skills, CheckpointError> {
-        let skills = self.primitives.iter().enumerate().map(|(index, file)| {
-            let place = format!("state.primitives[{index}]");
-            let subtask = catalogue
-                .find(&file.subtask)
-                .ok_or_else(|| misfit(&place, format!("found subtask {:?}", file.subtask)))?;
-            Skill::from_vectors(subtask, catalogue, &file.actions).ok_or_else(|| {
-                let width = catalogue.width(subtask);
-                let actions = catalogue.subtask(subtask).actions();
-                misfit(
-                    &place,
-                    format!("allowed: {actions} vectors of {width} numbers"),
-                )
-            })
-        });
+        let skills = self
+            .primitives
+            .iter()
+            .enumerate()
+            .map(|(index, file)| file.skill(&format!("state.primitives[{index}]"), catalogue));
         Skills::new(skills.collect::<Result<_, _>>()?, catalogue).ok_or_else(|| {
-            misfit(
+            CheckpointError::misfit(
                 "state.primitives",
                 String::from("allowed: each primitive subtask once, in order"),
             )
         })
-    }
-}
-
-impl IndividualFile {
-    fn of(individual: &Individual, catalogue: &Catalogue) -> Result<Self, CheckpointError> {
-        let tree = individual.hierarchy.tree();
-        let nodes = individual.hierarchy.values().iter().enumerate();
-        let composites: Vec<_> = nodes
-            .filter_map(|(node, values)| values.as_ref().map(|values| (node, values)))
-            .map(|(node, values)| CompositeFile {
-                subtask: tree.subtask(node).name(catalogue).to_owned(),
-                temperature: values.temperature,
-                children: tree
-                    .children(node)
-                    .zip(values.vectors())
-                    .map(|(child, [c_tilde, c])| ChildFile {
-                        subtask: tree.subtask(child).name(catalogue).to_owned(),
-                        c_tilde,
-                        c,
-                    })
-                    .collect(),
-            })
-            .collect();
-        let finite = composites
-            .iter()
-            .flat_map(|composite| &composite.children)
-            .all(|child| {
-                child
-                    .c_tilde
-                    .iter()
-                    .chain(&child.c)
-                    .all(|value| value.is_finite())
-            });
-        if !finite {
-            return Err(CheckpointError::Diverged { id: individual.id });
-        }
-        Ok(Self {
-            id: individual.id,
-            origin: individual.origin.clone(),
-            tree: to_text(tree, catalogue),
-            composites,
-        })
-    }
-
-    fn individual(
-        &self,
-        place: &str,
-        catalogue: &Catalogue,
-        scenario: &Scenario,
-    ) -> Result<Individual, CheckpointError> {
-        let tree = read_tree(&self.tree, catalogue, scenario.evolution.maximum_depth)
-            .map_err(|error: TreeError| misfit(&format!("{place}.tree"), error.to_string()))?;
-        let mut files = self.composites.iter();
-        let mut values = Vec::with_capacity(tree.nodes().len());
-        for node in 0..tree.nodes().len() {
-            let subtask = tree.subtask(node);
-            if !catalogue.subtask(subtask).is_composite() {
-                values.push(None);
-                continue;
-            }
-            let name = subtask.name(catalogue);
-            let children = tree
-                .children(node)
-                .map(|child| tree.subtask(child).name(catalogue));
-            let file = files.next().filter(|file| {
-                let listed = file.children.iter().map(|child| child.subtask.as_str());
-                file.subtask == name && listed.eq(children)
-            });
-            let place = format!("{place}.composites ({name})");
-            let file = file.ok_or_else(|| {
-                misfit(
-                    &place,
-                    String::from(
-                        "allowed: the composites of the tree and their children, in order",
-                    ),
-                )
-            })?;
-            check_temperature(&place, file.temperature, &scenario.learning)?;
-            values.push(Some(file.values(subtask, catalogue).ok_or_else(|| {
-                let width = catalogue.width(subtask);
-                misfit(
-                    &place,
-                    format!("allowed: {width} numbers in c_tilde and in c"),
-                )
-            })?));
-        }
-        let extra = files.next().is_some();
-        let hierarchy = Hierarchy::from_parts(tree, values).filter(|_| !extra);
-        let hierarchy = hierarchy.ok_or_else(|| {
-            misfit(
-                place,
-                String::from("allowed: one entry in composites for each composite of the tree"),
-            )
-        })?;
-        Ok(Individual {
-            id: self.id,
-            origin: self.origin.clone(),
-            hierarchy,
-        })
-    }
-}
-
-impl CompositeFile {
-    fn values(
-        &self,
-        subtask: crate::worlds::SubtaskId,
-        catalogue: &Catalogue,
-    ) -> Option<CompositeValues> {
-        let vectors: Vec<_> = self
-            .children
-            .iter()
-            .map(|child| [child.c_tilde.clone(), child.c.clone()])
-            .collect();
-        CompositeValues::from_vectors(subtask, catalogue, self.temperature, &vectors)
-    }
-}
-
-/// A temperature falls from its initial value to its limit.
-fn check_temperature(
-    place: &str,
-    found: f32,
-    learning: &LearningModel,
-) -> Result<(), CheckpointError> {
-    let (limit, initial) = (
-        learning.temperature_limit as f32,
-        learning.initial_temperature as f32,
-    );
-    match (limit..=initial).contains(&found) {
-        true => Ok(()),
-        false => Err(misfit(
-            place,
-            format!("temperature: found {found}; allowed: {limit} to {initial}"),
-        )),
-    }
-}
-
-fn misfit(place: &str, message: String) -> CheckpointError {
-    CheckpointError::Misfit {
-        place: place.to_owned(),
-        message,
     }
 }
 

@@ -2,6 +2,7 @@
 //! checkpoint and resume; and the evaluation of single structures.
 
 mod checkpoint;
+mod checkpoint_error;
 mod controls;
 mod evaluate;
 mod event;
@@ -10,14 +11,17 @@ mod follower;
 mod log;
 mod manifest;
 mod outcome;
+mod population_file;
 mod pulse;
 mod recorder;
 mod run;
 mod run_error;
 mod watch;
+mod work;
 mod worlds;
 
-pub use checkpoint::{Checkpoint, CheckpointError, LogPosition};
+pub use checkpoint::{Checkpoint, LogPosition};
+pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
 pub use evaluate::{Evaluation, Protocol, Repeat, evaluate};
 pub use event::{Ending, Event};

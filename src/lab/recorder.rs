@@ -13,7 +13,8 @@ use std::sync::Arc;
 use crossbeam_channel::{Receiver, select};
 use thiserror::Error;
 
-use super::checkpoint::{Checkpoint, CheckpointError, LogPosition};
+use super::checkpoint::{Checkpoint, LogPosition};
+use super::checkpoint_error::CheckpointError;
 use super::controls::Controls;
 use super::event::Event;
 use super::folder::{Keep, RunFolder};

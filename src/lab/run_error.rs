@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::checkpoint::CheckpointError;
+use super::checkpoint_error::CheckpointError;
 use super::folder::FolderError;
 use super::log::LogError;
 use super::recorder::RecordError;

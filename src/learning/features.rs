@@ -5,44 +5,10 @@
 //! centres each need 8 + 4 exponentials, not 32. A map whose last axes are those of
 //! another map starts from its features.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 
-use super::exponential::exponentials;
-use super::linear::{padded, total};
-use crate::worlds::{Axis, Catalogue, FeatureMap, MapId};
-
-/// Gaussians that are computed at once. Axes are taken together as long as they have
-/// no more than this many: enough to fill a vector, few enough to save exponentials.
-const LANES: usize = 8;
-
-/// What one input adds to the exponents of eight Gaussians.
-#[derive(Clone, Debug)]
-struct Term {
-    input: usize,
-    /// Infinity where there is no Gaussian.
-    centres: [f32; LANES],
-    /// -1 / (2 sigma^2).
-    exponent: f32,
-}
-
-/// Gaussians over the axes of a group, the last one varying fastest.
-#[derive(Clone, Debug)]
-struct Group {
-    size: usize,
-    /// For every eight Gaussians one term an axis.
-    terms: Vec<Vec<Term>>,
-}
-
-/// A feature map, prepared.
-#[derive(Clone, Debug)]
-struct Grid {
-    /// Padded number of features.
-    width: usize,
-    /// The map whose features the grid starts from, and their number.
-    base: Option<(MapId, usize)>,
-    /// The remaining axes in groups, the group varying fastest first.
-    groups: Vec<Group>,
-}
+use super::grid::{Compute, Grid, Group};
+use crate::worlds::{Catalogue, MapId};
 
 /// Computes features from inputs.
 #[derive(Clone, Debug)]
@@ -137,176 +103,12 @@ impl Features {
     }
 }
 
-impl Grid {
-    fn new(map: &FeatureMap, maps: &[FeatureMap]) -> Self {
-        let ends_in = |(_, other): &(usize, &FeatureMap)| {
-            other.axes.len() < map.axes.len() && map.axes.ends_with(&other.axes)
-        };
-        let base = maps.iter().enumerate().filter(ends_in);
-        let base = base.max_by_key(|(_, other)| other.axes.len());
-        let own = map.axes.len() - base.map_or(0, |(_, other)| other.axes.len());
-        let mut groups = Vec::new();
-        let mut axes = &map.axes[..own];
-        while !axes.is_empty() {
-            let group = |count| &axes[axes.len() - count..];
-            let fits = |&count: &usize| count == 1 || size(group(count)) <= LANES;
-            let count = (1..=axes.len()).take_while(fits).count();
-            groups.push(Group::new(group(count)));
-            axes = &axes[..axes.len() - count];
-        }
-        Self {
-            width: padded(map.width()),
-            base: base.map(|(index, other)| (MapId(index as u8), other.width())),
-            groups,
-        }
-    }
-}
-
-/// Number of Gaussians on the grid of some axes.
-fn size(axes: &[Axis]) -> usize {
-    axes.iter().map(|axis| axis.centres).product()
-}
-
-impl Group {
-    fn new(axes: &[Axis]) -> Self {
-        let size = size(axes);
-        let term = |first: usize, axis: usize| {
-            let period: usize = self::size(&axes[axis + 1..]);
-            let axis = &axes[axis];
-            let centre = |gaussian: usize| match gaussian {
-                _ if gaussian >= size => f32::INFINITY,
-                _ => (gaussian / period % axis.centres) as f32 / (axis.centres - 1) as f32,
-            };
-            Term {
-                input: axis.input,
-                centres: std::array::from_fn(|lane| centre(first + lane)),
-                exponent: (-0.5 / (axis.sigma * axis.sigma)) as f32,
-            }
-        };
-        let terms = (0..size).step_by(LANES);
-        Self {
-            size,
-            terms: terms
-                .map(|first| (0..axes.len()).map(|axis| term(first, axis)).collect())
-                .collect(),
-        }
-    }
-
-    /// Number of Gaussians, padded to whole lanes.
-    fn lanes(&self) -> usize {
-        self.terms.len() * LANES
-    }
-
-    /// Computes the Gaussians and returns their sum.
-    #[inline(always)]
-    fn evaluate<S: Simd>(&self, simd: S, inputs: &[f32], gaussians: &mut [f32]) -> f32 {
-        let mut sums = [simd.splat_f32s(0.0); LANES];
-        let lanes = gaussians.as_chunks_mut::<LANES>().0;
-        for (lanes, terms) in lanes.iter_mut().zip(&self.terms) {
-            let registers = S::as_mut_simd_f32s(lanes).0.iter_mut().enumerate();
-            for (register, gaussians) in registers {
-                let mut exponents = simd.splat_f32s(0.0);
-                for term in terms {
-                    let input = simd.splat_f32s(inputs[term.input]);
-                    let centres = S::as_simd_f32s(&term.centres).0[register];
-                    let offset = simd.sub_f32s(input, centres);
-                    let square = simd.mul_f32s(offset, offset);
-                    let exponent = simd.splat_f32s(term.exponent);
-                    exponents = simd.add_f32s(exponents, simd.mul_f32s(square, exponent));
-                }
-                *gaussians = exponentials(simd, exponents);
-                sums[register] = simd.add_f32s(sums[register], *gaussians);
-            }
-        }
-        total(simd, &mut sums[..LANES / S::F32_LANES])
-    }
-}
-
-/// Computes the features of one map.
-struct Compute<'a> {
-    grid: &'a Grid,
-    inputs: &'a [f32],
-    /// The features that the grid starts from.
-    base: Option<&'a [f32]>,
-    gaussians: &'a mut [f32],
-    out: &'a mut [f32],
-}
-
-impl WithSimd for Compute<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { grid, out, .. } = self;
-        let mut sum = 1.0;
-        let mut rest = &mut *self.gaussians;
-        for group in &grid.groups {
-            let (gaussians, others) = rest.split_at_mut(group.lanes());
-            sum *= group.evaluate(simd, self.inputs, gaussians);
-            rest = others;
-        }
-        let Some((group, groups)) = grid.groups.split_first() else {
-            return;
-        };
-        // One division normalises along all axes.
-        let scale = 1.0 / sum;
-        let (gaussians, mut rest) = self.gaussians.split_at(group.lanes());
-        let gaussians = &gaussians[..group.size];
-        let mut width = group.size;
-        if let Some(base) = self.base {
-            let mut out = &mut *out;
-            for gaussian in gaussians {
-                let (block, others) = out.split_at_mut(base.len());
-                scaled(simd, block, base, gaussian * scale);
-                out = others;
-            }
-            width *= base.len();
-        } else {
-            scaled(simd, &mut out[..width], gaussians, scale);
-        }
-        for group in groups {
-            let (gaussians, others) = rest.split_at(group.lanes());
-            extend(simd, out, width, &gaussians[..group.size]);
-            width *= group.size;
-            rest = others;
-        }
-    }
-}
-
-/// Multiplies the first `width` numbers by each factor, one block a factor.
-#[inline(always)]
-fn extend<S: Simd>(simd: S, out: &mut [f32], width: usize, factors: &[f32]) {
-    let (base, mut rest) = out.split_at_mut(width);
-    for &factor in &factors[1..] {
-        let (block, others) = rest.split_at_mut(width);
-        scaled(simd, block, base, factor);
-        rest = others;
-    }
-    for number in base {
-        *number *= factors[0];
-    }
-}
-
-/// `out = numbers * factor`, for vectors of the same length.
-#[inline(always)]
-fn scaled<S: Simd>(simd: S, out: &mut [f32], numbers: &[f32], factor: f32) {
-    let (out_vectors, out_rest) = S::as_mut_simd_f32s(out);
-    let (vectors, rest) = S::as_simd_f32s(numbers);
-    let splat = simd.splat_f32s(factor);
-    for (out, vector) in out_vectors.iter_mut().zip(vectors) {
-        *out = simd.mul_f32s(*vector, splat);
-    }
-    for (out, number) in out_rest.iter_mut().zip(rest) {
-        *out = number * factor;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scenario::{RbfWidth, Scenario, WorldModel};
-    use crate::worlds::World;
     use crate::worlds::foraging::{ForagingWorld, INPUTS};
+    use crate::worlds::{Axis, World};
     use proptest::prelude::*;
 
     fn world(width: RbfWidth, proximity_centres: usize) -> ForagingWorld {

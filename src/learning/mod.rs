@@ -9,7 +9,9 @@ mod agent;
 mod exponential;
 mod features;
 mod gate;
+mod grid;
 mod hierarchy;
+mod lessons;
 mod linear;
 mod observe;
 mod plan;
@@ -18,6 +20,7 @@ mod selection;
 mod situation;
 mod skills;
 mod training;
+mod visited;
 
 pub use agent::{Agent, Trial};
 pub use features::{Encoder, Features};

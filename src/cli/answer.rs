@@ -1,0 +1,39 @@
+//! Commands that compute an answer and print it: a signal stops them.
+
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::output::{self, Done, Failure, Format};
+use super::signals::Caught;
+use crate::lab::{WorldTask, with_world};
+use crate::learning::Gate;
+use crate::scenario::Scenario;
+
+/// Carries out the task that `task` makes with a gate, in the world of `scenario`, and
+/// prints its result as `format` says. A signal stops the gate: then nothing is printed.
+pub(super) fn answer<T, R>(
+    scenario: Scenario,
+    format: Format,
+    task: impl FnOnce(Arc<Gate>) -> T,
+    describe: impl FnOnce(&R) -> String,
+) -> Done
+where
+    T: WorldTask<Output = Result<R, Failure>>,
+    R: Serialize,
+{
+    let gate = Arc::new(Gate::default());
+    let stopping = Arc::clone(&gate);
+    let ended = Caught::now()?.then(move || stopping.stop())?;
+    let result = with_world(scenario, task(gate))?;
+    if let Some(code) = ended.exit_code() {
+        return Ok(ExitCode::from(code));
+    }
+    let result = result?;
+    match format {
+        Format::Json => output::json(&result)?,
+        Format::Text => output::text(&describe(&result))?,
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,207 @@
+//! Primitive subtasks and individuals as a checkpoint holds them: their model in the file,
+//! and the way there and back.
+
+use serde::{Deserialize, Serialize};
+
+use super::checkpoint_error::CheckpointError;
+use crate::evolution::{Individual, Origin, TreeError, read_tree};
+use crate::hierarchy::to_text;
+use crate::learning::{CompositeValues, Hierarchy, Skill};
+use crate::scenario::{LearningModel, Scenario};
+use crate::worlds::{Catalogue, SubtaskId};
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PrimitiveFile {
+    subtask: String,
+    /// Parameters of Q_prim, one vector an action.
+    actions: Vec<Vec<f32>>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct IndividualFile {
+    id: u64,
+    origin: Origin,
+    tree: String,
+    /// In preorder.
+    composites: Vec<CompositeFile>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CompositeFile {
+    subtask: String,
+    temperature: f32,
+    children: Vec<ChildFile>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ChildFile {
+    subtask: String,
+    /// Parameters of C~, one block of features per active state type.
+    c_tilde: Vec<f32>,
+    /// Parameters of C.
+    c: Vec<f32>,
+}
+
+impl PrimitiveFile {
+    pub(super) fn of(skill: &Skill, catalogue: &Catalogue) -> Self {
+        Self {
+            subtask: skill.subtask.name(catalogue).to_owned(),
+            actions: skill.vectors().map(<[f32]>::to_vec).collect(),
+        }
+    }
+
+    pub(super) fn skill(
+        &self,
+        place: &str,
+        catalogue: &Catalogue,
+    ) -> Result<Skill, CheckpointError> {
+        let subtask = catalogue.find(&self.subtask).ok_or_else(|| {
+            CheckpointError::misfit(place, format!("found subtask {:?}", self.subtask))
+        })?;
+        Skill::from_vectors(subtask, catalogue, &self.actions).ok_or_else(|| {
+            let width = catalogue.width(subtask);
+            let actions = catalogue.subtask(subtask).actions();
+            CheckpointError::misfit(
+                place,
+                format!("allowed: {actions} vectors of {width} numbers"),
+            )
+        })
+    }
+}
+
+impl IndividualFile {
+    pub(super) fn of(
+        individual: &Individual,
+        catalogue: &Catalogue,
+    ) -> Result<Self, CheckpointError> {
+        let tree = individual.hierarchy.tree();
+        let nodes = individual.hierarchy.values().iter().enumerate();
+        let composites: Vec<_> = nodes
+            .filter_map(|(node, values)| values.as_ref().map(|values| (node, values)))
+            .map(|(node, values)| CompositeFile {
+                subtask: tree.subtask(node).name(catalogue).to_owned(),
+                temperature: values.temperature,
+                children: tree
+                    .children(node)
+                    .zip(values.vectors())
+                    .map(|(child, [c_tilde, c])| ChildFile {
+                        subtask: tree.subtask(child).name(catalogue).to_owned(),
+                        c_tilde,
+                        c,
+                    })
+                    .collect(),
+            })
+            .collect();
+        let finite = composites
+            .iter()
+            .flat_map(|composite| &composite.children)
+            .all(|child| {
+                child
+                    .c_tilde
+                    .iter()
+                    .chain(&child.c)
+                    .all(|value| value.is_finite())
+            });
+        if !finite {
+            return Err(CheckpointError::Diverged { id: individual.id });
+        }
+        Ok(Self {
+            id: individual.id,
+            origin: individual.origin.clone(),
+            tree: to_text(tree, catalogue),
+            composites,
+        })
+    }
+
+    pub(super) fn individual(
+        &self,
+        place: &str,
+        catalogue: &Catalogue,
+        scenario: &Scenario,
+    ) -> Result<Individual, CheckpointError> {
+        let tree = read_tree(&self.tree, catalogue, scenario.evolution.maximum_depth).map_err(
+            |error: TreeError| CheckpointError::misfit(&format!("{place}.tree"), error.to_string()),
+        )?;
+        let mut files = self.composites.iter();
+        let mut values = Vec::with_capacity(tree.nodes().len());
+        for node in 0..tree.nodes().len() {
+            let subtask = tree.subtask(node);
+            if !catalogue.subtask(subtask).is_composite() {
+                values.push(None);
+                continue;
+            }
+            let name = subtask.name(catalogue);
+            let children = tree
+                .children(node)
+                .map(|child| tree.subtask(child).name(catalogue));
+            let file = files.next().filter(|file| {
+                let listed = file.children.iter().map(|child| child.subtask.as_str());
+                file.subtask == name && listed.eq(children)
+            });
+            let place = format!("{place}.composites ({name})");
+            let file = file.ok_or_else(|| {
+                CheckpointError::misfit(
+                    &place,
+                    String::from(
+                        "allowed: the composites of the tree and their children, in order",
+                    ),
+                )
+            })?;
+            check_temperature(&place, file.temperature, &scenario.learning)?;
+            values.push(Some(file.values(subtask, catalogue).ok_or_else(|| {
+                let width = catalogue.width(subtask);
+                CheckpointError::misfit(
+                    &place,
+                    format!("allowed: {width} numbers in c_tilde and in c"),
+                )
+            })?));
+        }
+        let extra = files.next().is_some();
+        let hierarchy = Hierarchy::from_parts(tree, values).filter(|_| !extra);
+        let hierarchy = hierarchy.ok_or_else(|| {
+            CheckpointError::misfit(
+                place,
+                String::from("allowed: one entry in composites for each composite of the tree"),
+            )
+        })?;
+        Ok(Individual {
+            id: self.id,
+            origin: self.origin.clone(),
+            hierarchy,
+        })
+    }
+}
+
+impl CompositeFile {
+    fn values(&self, subtask: SubtaskId, catalogue: &Catalogue) -> Option<CompositeValues> {
+        let vectors: Vec<_> = self
+            .children
+            .iter()
+            .map(|child| [child.c_tilde.clone(), child.c.clone()])
+            .collect();
+        CompositeValues::from_vectors(subtask, catalogue, self.temperature, &vectors)
+    }
+}
+
+/// A temperature falls from its initial value to its limit.
+fn check_temperature(
+    place: &str,
+    found: f32,
+    learning: &LearningModel,
+) -> Result<(), CheckpointError> {
+    let (limit, initial) = (
+        learning.temperature_limit as f32,
+        learning.initial_temperature as f32,
+    );
+    match (limit..=initial).contains(&found) {
+        true => Ok(()),
+        false => Err(CheckpointError::misfit(
+            place,
+            format!("temperature: found {found}; allowed: {limit} to {initial}"),
+        )),
+    }
+}

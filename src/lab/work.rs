@@ -1,0 +1,209 @@
+//! The evolution thread of a run: the loop of Algorithm 3.1, with its events and commands.
+
+use std::sync::Arc;
+use std::thread;
+use std::time::Instant;
+
+use crossbeam_channel::{Sender, bounded};
+
+use super::controls::Controls;
+use super::event::{EVENT_FORMAT, Ending, Event};
+use super::folder::{Keep, RunFolder};
+use super::log::Log;
+use super::outcome::{BestIndividual, Outcome};
+use super::pulse::Pulse;
+use super::recorder::{Message, QUEUE_CAPACITY, Recorder};
+use super::run_error::RunError;
+use crate::evolution::{Evolution, Experiment, State, Workers};
+use crate::files::write_atomically;
+use crate::learning::Stopped;
+use crate::worlds::World;
+
+/// What the evolution thread owns.
+pub(super) struct Work<W: World> {
+    pub(super) experiment: Experiment<W>,
+    pub(super) seed: u64,
+    pub(super) folder: RunFolder,
+    pub(super) workers: Workers,
+    pub(super) keep: Keep,
+    pub(super) controls: Controls,
+    pub(super) state: Option<State>,
+}
+
+/// How far evolution came.
+struct Progress {
+    generations: u64,
+    converged: bool,
+    control_steps: u64,
+    best: Option<BestIndividual>,
+    over: bool,
+}
+
+/// Closes the stream of events however the thread ends.
+struct Closing<'c>(&'c Controls);
+
+impl Drop for Closing<'_> {
+    fn drop(&mut self) {
+        self.0.close();
+    }
+}
+
+impl<W: World> Work<W> {
+    pub(super) fn run(self, log: Log, past: Vec<Event>) -> Result<Outcome, RunError> {
+        let started = Instant::now();
+        let _closing = Closing(&self.controls);
+        let _pulse = Pulse::start(self.folder.path(), &self.controls);
+        let (sender, messages) = bounded(QUEUE_CAPACITY);
+        let requests = self.controls.requests();
+        let recorder = Recorder {
+            experiment: &self.experiment,
+            seed: self.seed,
+            folder: &self.folder,
+            keep: self.keep,
+            log,
+            controls: &self.controls,
+        };
+        let (progress, recorded) = thread::scope(|scope| {
+            let recording = scope.spawn(move || recorder.run(&messages, &requests));
+            let progress = self.evolve(past, sender);
+            (progress, recording.join())
+        });
+        let folder = self.folder.path().display().to_string();
+        recorded
+            .map_err(|_| RunError::Panicked)?
+            .map_err(|source| RunError::Record {
+                folder: folder.clone(),
+                source,
+            })?;
+        let outcome = Outcome {
+            scenario: self.experiment.scenario.name.clone(),
+            seed: self.seed,
+            generations: progress.generations,
+            converged: progress.converged,
+            stopped: !progress.over,
+            best: progress.best,
+            control_steps: progress.control_steps,
+            wall_seconds: started.elapsed().as_secs_f64(),
+            run_dir: folder.clone(),
+        };
+        if progress.over {
+            let written = serde_json::to_vec_pretty(&outcome)
+                .map_err(std::io::Error::from)
+                .and_then(|bytes| write_atomically(&self.folder.summary(), &bytes));
+            written.map_err(|error| RunError::Record {
+                folder,
+                source: error.into(),
+            })?;
+        }
+        Ok(outcome)
+    }
+
+    /// The loop of Algorithm 3.1. Ends early when the run is stopped or the recorder
+    /// has failed and gone.
+    fn evolve(&self, past: Vec<Event>, recorder: Sender<Message>) -> Progress {
+        let mut progress = Progress {
+            generations: 0,
+            converged: false,
+            control_steps: 0,
+            best: None,
+            over: false,
+        };
+        for event in past {
+            if let Event::Generation(record) = &event {
+                progress.best = BestIndividual::of(record);
+            }
+            self.controls.tell(event);
+        }
+        // An error means that the run was stopped; the progress so far says how far it came.
+        let _stopped = self.evolve_on(&mut progress, &recorder);
+        progress
+    }
+
+    fn evolve_on(
+        &self,
+        progress: &mut Progress,
+        recorder: &Sender<Message>,
+    ) -> Result<(), Stopped> {
+        let (seed, workers) = (self.seed, &self.workers);
+        let scenario = &self.experiment.scenario;
+        let controls = &self.controls;
+        let population = scenario.evolution.population_size;
+        let show = |generation, lived| {
+            controls.tell(Event::Progress {
+                generation,
+                lived,
+                population,
+                control_steps: controls.control_steps(),
+            });
+        };
+        let mut evolution = match self.state.clone() {
+            Some(state) => {
+                Evolution::resume(&self.experiment, workers, seed, state, controls.gate())?
+            }
+            None => {
+                let started = Event::Started {
+                    format: EVENT_FORMAT,
+                    scenario: scenario.name.clone(),
+                    seed,
+                };
+                self.fact(started, recorder)?;
+                show(0, 0);
+                Evolution::begin(&self.experiment, workers, seed, controls.gate())?
+            }
+        };
+        // A resumed run too: its limit may be new, and the process before may have died
+        // between saving this state and keeping it.
+        self.keep(&evolution, recorder)?;
+        progress.note(evolution.state());
+        while !evolution.is_over() {
+            controls.gate().pass(0)?;
+            let generation = evolution.state().generation + 1;
+            show(generation, 0);
+            let record = evolution.step(controls.gate(), |lived| show(generation, lived))?;
+            progress.best = BestIndividual::of(&record);
+            progress.note(evolution.state());
+            self.fact(Event::Generation(Box::new(record)), recorder)?;
+            self.keep(&evolution, recorder)?;
+            controls.generation_over();
+        }
+        let ending = match progress.converged {
+            true => Ending::Converged,
+            false => Ending::GenerationLimit,
+        };
+        let generations = progress.generations;
+        self.fact(
+            Event::Ended {
+                generations,
+                ending,
+            },
+            recorder,
+        )?;
+        progress.over = true;
+        Ok(())
+    }
+
+    /// Records an event and tells it.
+    fn fact(&self, event: Event, recorder: &Sender<Message>) -> Result<(), Stopped> {
+        let message = Message::Event(Box::new(event.clone()));
+        recorder.send(message).map_err(|_| Stopped)?;
+        self.controls.tell(event);
+        Ok(())
+    }
+
+    fn keep(
+        &self,
+        evolution: &Evolution<'_, W>,
+        recorder: &Sender<Message>,
+    ) -> Result<(), Stopped> {
+        let state = Message::State(Arc::clone(evolution.state()));
+        recorder.send(state).map_err(|_| Stopped)
+    }
+}
+
+impl Progress {
+    fn note(&mut self, state: &State) {
+        self.generations = state.generation;
+        self.converged = state.converged;
+        self.control_steps = state.control_steps;
+    }
+}
