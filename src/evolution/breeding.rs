@@ -3,10 +3,12 @@
 use rand::RngExt;
 
 use super::crossover::crossover;
+use super::experiment::newborn;
 use super::individual::{Individual, Origin};
+use crate::hierarchy::random_tree;
 use crate::learning::{Gate, Stopped};
 use crate::random::Stream;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Variation};
 use crate::worlds::Catalogue;
 
 /// Pairs of parents drawn before two places are filled by copies instead.
@@ -15,8 +17,9 @@ const MAX_PARENT_DRAWS: usize = 20;
 /// The population after `ranked`, which is sorted from best to worst.
 ///
 /// The best are reproduced, as many of the worst die, and the places left are filled
-/// by crossover of parents that win tournaments among the survivors. `next_id` is the
-/// id of the next new individual, and moves on.
+/// by crossover of parents that win tournaments among the survivors - or as the
+/// scenario's `variation` says. `next_id` is the id of the next new individual, and moves
+/// on.
 ///
 /// # Errors
 /// When the gate is stopped.
@@ -29,6 +32,11 @@ pub(super) fn breed(
     gate: &Gate,
 ) -> Result<Vec<Individual>, Stopped> {
     let evolution = &scenario.evolution;
+    if evolution.variation == Variation::None {
+        let mut population = ranked.to_vec();
+        population.sort_by_key(|individual| individual.id);
+        return Ok(population);
+    }
     let reproduced = ranked[..evolution.reproduced]
         .iter()
         .map(|best| Individual {
@@ -36,6 +44,13 @@ pub(super) fn breed(
             ..best.clone()
         });
     let mut population: Vec<_> = reproduced.collect();
+    if evolution.variation == Variation::RandomTrees {
+        let places = ranked.len() - population.len();
+        population.extend(random_individuals(
+            places, next_id, scenario, catalogue, rng,
+        ));
+        return Ok(population);
+    }
     let survivors = &ranked[..ranked.len() - evolution.reproduced];
     while population.len() < ranked.len() {
         gate.pass(0)?;
@@ -52,6 +67,27 @@ pub(super) fn breed(
     }
     population.truncate(ranked.len());
     Ok(population)
+}
+
+/// Fresh individuals with random hierarchies.
+pub(super) fn random_individuals(
+    count: usize,
+    next_id: &mut u64,
+    scenario: &Scenario,
+    catalogue: &Catalogue,
+    rng: &mut Stream,
+) -> Vec<Individual> {
+    let draw = |_| {
+        let tree = random_tree(catalogue, scenario.evolution.maximum_depth, rng);
+        let id = *next_id;
+        *next_id += 1;
+        Individual {
+            id,
+            origin: Origin::Random,
+            hierarchy: newborn(tree, &scenario.learning, catalogue),
+        }
+    };
+    (0..count).map(draw).collect()
 }
 
 /// The ranks of two different parents, each the winner of a tournament.

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rand::RngExt;
 
-use super::breeding::breed;
+use super::breeding::{breed, random_individuals};
 use super::experiment::Experiment;
 use super::individual::{Individual, Origin};
 use super::life::{Life, Starts, is_experienced, live};
@@ -15,7 +15,7 @@ use super::record::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Summary, canonical, structural_difference};
 use crate::learning::{Gate, PolicySamples, SelectionProbabilities, Skills, Stopped, average};
 use crate::random::{Purpose, stream};
-use crate::scenario::{PrimitiveLearning, Selection};
+use crate::scenario::{PrimitiveLearning, Selection, Variation};
 use crate::worlds::World;
 
 /// All that an evolution has come to: with the scenario and the seed, everything
@@ -47,7 +47,7 @@ pub struct Evolution<'e, W: World> {
 }
 
 impl<'e, W: World> Evolution<'e, W> {
-    /// Line 1: the hand-coded initial population, with freshly trained primitive subtasks.
+    /// Line 1: the initial population, with freshly trained primitive subtasks.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -58,13 +58,7 @@ impl<'e, W: World> Evolution<'e, W> {
         gate: &Gate,
     ) -> Result<Self, Stopped> {
         let skills = experiment.train(seed, 0, workers, gate)?;
-        let trees = experiment.initial_population.iter().zip(0..);
-        let individuals = trees.map(|(tree, id)| Individual {
-            id,
-            origin: Origin::HandCoded,
-            hierarchy: experiment.newborn(tree.clone()),
-        });
-        let individuals: Vec<_> = individuals.collect();
+        let individuals = first_population(experiment, seed);
         let primitives = experiment.catalogue().primitives();
         let state = State {
             generation: 0,
@@ -112,6 +106,11 @@ impl<'e, W: World> Evolution<'e, W> {
     pub fn is_over(&self) -> bool {
         let limit = self.experiment.scenario.evolution.generation_limit;
         self.state.converged || self.state.generation >= limit
+    }
+
+    /// Only crossover can make one structure of many; without it the limit is the end.
+    fn may_converge(&self) -> bool {
+        self.experiment.scenario.evolution.variation == Variation::Crossover
     }
 
     /// One turn of the loop: lines 8 and 9 but before the first generation, then lines
@@ -268,7 +267,7 @@ impl<'e, W: World> Evolution<'e, W> {
             generation,
             mean_difference: difference as f64 / others.len().max(1) as f64,
             selection_probabilities: self.named(self.probabilities(better, skills, gate)?),
-            converged: better.iter().all(|other| structure(other) == first),
+            converged: self.may_converge() && better.iter().all(|other| structure(other) == first),
             control_steps,
             individuals,
         })
@@ -306,6 +305,29 @@ impl<'e, W: World> Evolution<'e, W> {
             .map(|row| row.map(|row| names().zip(row).collect()))
             .collect()
     }
+}
+
+/// The hand-coded hierarchies, or as many drawn by chance for random search.
+fn first_population<W: World>(experiment: &Experiment<W>, seed: u64) -> Vec<Individual> {
+    let evolution = &experiment.scenario.evolution;
+    if evolution.variation == Variation::RandomTrees {
+        let mut rng = stream(seed, 0, 0, Purpose::Breeding);
+        let (scenario, catalogue) = (&experiment.scenario, experiment.catalogue());
+        return random_individuals(
+            evolution.population_size,
+            &mut 0,
+            scenario,
+            catalogue,
+            &mut rng,
+        );
+    }
+    let trees = experiment.initial_population.iter().zip(0..);
+    let individuals = trees.map(|(tree, id)| Individual {
+        id,
+        origin: Origin::HandCoded,
+        hierarchy: experiment.newborn(tree.clone()),
+    });
+    individuals.collect()
 }
 
 fn owned(names: &[&str]) -> Vec<String> {

@@ -6,7 +6,7 @@ use super::parallel::Workers;
 use crate::hierarchy::{self, TextError, Tree, TypingError};
 use crate::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Stopped, train};
 use crate::random::{Purpose, stream};
-use crate::scenario::Scenario;
+use crate::scenario::{LearningModel, Scenario};
 use crate::worlds::{Catalogue, World};
 
 /// A scenario with its world, its feature maps and its first hierarchies.
@@ -72,10 +72,7 @@ impl<W: World> Experiment<W> {
     /// A hierarchy of this shape that has learned nothing.
     #[must_use]
     pub fn newborn(&self, tree: Tree) -> Hierarchy {
-        let learning = &self.scenario.learning;
-        let temperature = learning.initial_temperature as f32;
-        let initial = learning.initial_parameter as f32;
-        Hierarchy::new(tree, self.catalogue(), temperature, initial)
+        newborn(tree, &self.scenario.learning, self.catalogue())
     }
 
     /// An agent with a hierarchy and the primitive subtasks, ready for the scenario's trials.
@@ -120,6 +117,13 @@ impl<W: World> Experiment<W> {
         let skills = Skills::new(skills, self.catalogue());
         Ok(skills.unwrap_or_else(|| unreachable!("one skill was trained for each primitive")))
     }
+}
+
+/// A hierarchy of this shape that has learned nothing.
+pub(super) fn newborn(tree: Tree, learning: &LearningModel, catalogue: &Catalogue) -> Hierarchy {
+    let temperature = learning.initial_temperature as f32;
+    let initial = learning.initial_parameter as f32;
+    Hierarchy::new(tree, catalogue, temperature, initial)
 }
 
 /// Reads a hierarchy and checks the typing rules.

@@ -21,6 +21,8 @@ pub struct Individual {
 pub enum Origin {
     /// From the scenario's initial population.
     HandCoded,
+    /// Drawn by chance (`variation: random_trees`).
+    Random,
     /// Among the best of the generation before; it lives on.
     Reproduced,
     /// By crossover: the receiver with one subtree replaced by the donor's.

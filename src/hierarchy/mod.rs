@@ -3,6 +3,7 @@
 //! A hierarchy is the genome of an individual. Here is its structure only; what it
 //! has learned is in [`crate::learning`].
 
+mod designs;
 mod difference;
 mod dot;
 mod draw;
@@ -11,6 +12,7 @@ mod text;
 mod tree;
 mod typing;
 
+pub use designs::{complete, flat, random_tree};
 pub use difference::structural_difference;
 pub use dot::to_dot;
 pub use draw::{Glyphs, draw};

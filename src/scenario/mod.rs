@@ -26,7 +26,7 @@ pub use foraging::{
 };
 pub use settings::{
     CompletionBootstrap, CompositeChoice, CoolOn, EvolutionModel, Inheritance, LearningModel,
-    PrimitiveLearning, PseudoReward, Selection,
+    PrimitiveLearning, PseudoReward, Selection, Variation,
 };
 
 /// The version of the scenario format that this program reads.

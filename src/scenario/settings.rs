@@ -147,6 +147,9 @@ pub struct EvolutionModel {
     /// What offspring inherit.
     #[serde(default)]
     pub inheritance: Inheritance,
+    /// Where new hierarchies come from.
+    #[serde(default)]
+    pub variation: Variation,
     /// The hand-coded first generation, one hierarchy an individual, as text:
     /// `(Root Wander ApproachBattery ApproachNest)`.
     pub initial_population: Vec<String>,
@@ -198,4 +201,21 @@ pub enum Inheritance {
     Lamarckian,
     /// Nothing: offspring start from initial values.
     Darwinian,
+}
+
+/// Where the hierarchies of the next generation come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Variation {
+    /// Crossover of the survivors, besides the reproduced best (Thesis 3.2).
+    #[default]
+    Crossover,
+    /// Chance, besides the reproduced best: fresh random hierarchies that obey the rules.
+    /// The initial population is drawn like them and its hierarchies are not used. Only
+    /// the generation limit ends such a run: random search, with as many trials in a
+    /// generation as evolution.
+    RandomTrees,
+    /// Nowhere: all individuals live on and learn, generation after generation, until the
+    /// generation limit.
+    None,
 }

@@ -1,0 +1,201 @@
+//! Hierarchies that follow from a catalogue alone: designed, flat, and drawn by chance.
+
+use rand::RngExt;
+use rand::seq::SliceRandom;
+
+use super::tree::Tree;
+use super::typing::check;
+use crate::random::Stream;
+use crate::worlds::{Catalogue, StateTypes, SubtaskId};
+
+/// Draws of a random hierarchy before the flat one is taken instead. Of the foraging
+/// task's draws about one in four obeys the rules.
+const MAX_DRAWS: usize = 10_000;
+
+/// The complete hierarchy (Thesis Figure 4.2): every composite subtask, each below the
+/// most special one that contains its states, and every primitive subtask wherever no
+/// composite takes over.
+#[must_use]
+pub fn complete(catalogue: &Catalogue) -> Tree {
+    let mut preorder = vec![(SubtaskId::ROOT, 1)];
+    complete_below(SubtaskId::ROOT, 2, catalogue, &mut preorder);
+    tree_of(&preorder)
+}
+
+fn complete_below(
+    parent: SubtaskId,
+    depth: usize,
+    catalogue: &Catalogue,
+    preorder: &mut Vec<(SubtaskId, usize)>,
+) {
+    let active = |id: SubtaskId| catalogue.subtask(id).active;
+    let mut left = active(parent);
+    for child in catalogue.composites() {
+        if container(child, catalogue) == Some(parent) {
+            preorder.push((child, depth));
+            complete_below(child, depth + 1, catalogue, preorder);
+            left = without(left, active(child));
+        }
+    }
+    let primitives = catalogue.primitives().filter(|&id| active(id).meets(left));
+    preorder.extend(primitives.map(|primitive| (primitive, depth)));
+}
+
+/// The smallest composite whose states properly contain those of `composite`; of equals
+/// the first.
+fn container(composite: SubtaskId, catalogue: &Catalogue) -> Option<SubtaskId> {
+    let states = |id: SubtaskId| catalogue.subtask(id).active;
+    let own = states(composite);
+    let containing = catalogue
+        .composites()
+        .filter(|&other| own.is_subset_of(states(other)) && own != states(other));
+    let smallest = containing.min_by_key(|&other| states(other).len());
+    smallest.or_else(|| (composite != SubtaskId::ROOT).then_some(SubtaskId::ROOT))
+}
+
+fn without(states: StateTypes, gone: StateTypes) -> StateTypes {
+    let left: Vec<_> = states.iter().filter(|&t| !gone.contains(t)).collect();
+    StateTypes::of(&left)
+}
+
+/// The flat hierarchy: a root that chooses among all primitive subtasks.
+#[must_use]
+pub fn flat(catalogue: &Catalogue) -> Tree {
+    let primitives = catalogue.primitives().map(|primitive| (primitive, 2));
+    let preorder: Vec<_> = [(SubtaskId::ROOT, 1)]
+        .into_iter()
+        .chain(primitives)
+        .collect();
+    tree_of(&preorder)
+}
+
+/// A random hierarchy that obeys the rules.
+///
+/// From the root down every subtask that may be a child is one with probability 1/2, in
+/// random order; composite subtasks only where their children still fit into
+/// `maximum_depth`. The whole is drawn again until it obeys the rules.
+#[must_use]
+pub fn random_tree(catalogue: &Catalogue, maximum_depth: usize, rng: &mut Stream) -> Tree {
+    let drawn = (0..MAX_DRAWS).find_map(|_| {
+        let mut preorder = vec![(SubtaskId::ROOT, 1)];
+        let mut used = vec![false; catalogue.subtasks.len()];
+        grow(
+            SubtaskId::ROOT,
+            2,
+            maximum_depth,
+            catalogue,
+            &mut used,
+            &mut preorder,
+            rng,
+        );
+        let tree = Tree::from_preorder(&preorder)?;
+        check(&tree, catalogue, maximum_depth)
+            .is_ok()
+            .then_some(tree)
+    });
+    drawn.unwrap_or_else(|| flat(catalogue))
+}
+
+fn grow(
+    parent: SubtaskId,
+    depth: usize,
+    maximum_depth: usize,
+    catalogue: &Catalogue,
+    used: &mut [bool],
+    preorder: &mut Vec<(SubtaskId, usize)>,
+    rng: &mut Stream,
+) {
+    let states = catalogue.subtask(parent).active;
+    let mut children: Vec<_> = catalogue
+        .ids()
+        .filter(|&id| {
+            let subtask = catalogue.subtask(id);
+            let fits = if subtask.is_composite() {
+                let room = depth < maximum_depth && !used[id.index()];
+                room && id != SubtaskId::ROOT && subtask.active.is_subset_of(states)
+            } else {
+                subtask.active.meets(states)
+            };
+            fits && rng.random()
+        })
+        .collect();
+    children.shuffle(rng);
+    for child in children {
+        if !catalogue.subtask(child).is_composite() {
+            preorder.push((child, depth));
+        } else if !std::mem::replace(&mut used[child.index()], true) {
+            preorder.push((child, depth));
+            grow(
+                child,
+                depth + 1,
+                maximum_depth,
+                catalogue,
+                used,
+                preorder,
+                rng,
+            );
+        }
+    }
+}
+
+fn tree_of(preorder: &[(SubtaskId, usize)]) -> Tree {
+    Tree::from_preorder(preorder).unwrap_or_else(|| unreachable!("the depths are those of a tree"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hierarchy::{canonical, parse};
+    use crate::random::{Purpose, stream};
+    use crate::scenario::{Scenario, WorldModel};
+    use crate::worlds::World;
+    use crate::worlds::foraging::ForagingWorld;
+    use std::collections::HashSet;
+
+    fn foraging() -> ForagingWorld {
+        let scenario = Scenario::load("environment-1").unwrap();
+        #[allow(irrefutable_let_patterns)]
+        let WorldModel::Foraging(model) = &scenario.world else {
+            panic!("environment-1 is a foraging task");
+        };
+        ForagingWorld::new(model).unwrap()
+    }
+
+    #[test]
+    fn the_complete_hierarchy_is_that_of_figure_4_2() {
+        let world = foraging();
+        let catalogue = world.catalogue();
+        let figure = "(Root (Capture (FindBattery Avoid Wander) (VisibleBattery Avoid Wander \
+                      ApproachBattery Turn)) (Deliver (FindNest Avoid Wander) (VisibleNest Avoid \
+                      Wander ApproachNest Turn)))";
+        let figure = parse(figure, catalogue).unwrap();
+        assert_eq!(
+            canonical(&complete(catalogue), catalogue),
+            canonical(&figure, catalogue)
+        );
+        assert!(check(&complete(catalogue), catalogue, 4).is_ok());
+        assert!(check(&flat(catalogue), catalogue, 2).is_ok());
+    }
+
+    #[test]
+    fn random_hierarchies_obey_the_rules_and_reach_every_subtask() {
+        let world = foraging();
+        let catalogue = world.catalogue();
+        let mut rng = stream(1, 0, 0, Purpose::Breeding);
+        let trees: Vec<_> = (0..500)
+            .map(|_| random_tree(catalogue, 4, &mut rng))
+            .collect();
+        assert!(trees.iter().all(|tree| check(tree, catalogue, 4).is_ok()));
+        let structures: HashSet<_> = trees.iter().map(|t| canonical(t, catalogue)).collect();
+        assert!(structures.len() > 450, "{} structures", structures.len());
+        for id in catalogue.ids() {
+            let with = |tree: &&Tree| tree.nodes().iter().any(|node| node.subtask == id);
+            assert!(
+                trees.iter().filter(with).count() > 50,
+                "{}",
+                id.name(catalogue)
+            );
+        }
+        assert!(check(&random_tree(catalogue, 2, &mut rng), catalogue, 2).is_ok());
+    }
+}
