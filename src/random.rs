@@ -34,6 +34,10 @@ pub enum Purpose {
     RandomRank = 6,
     /// One repeat of `evaluate`.
     Evaluation = 7,
+    /// A rollout that somebody watches.
+    Watching = 8,
+    /// The noise of readings all over a policy map.
+    PolicyMap = 9,
 }
 
 /// The stream for `purpose` in the given run, generation and individual.

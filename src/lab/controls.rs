@@ -7,6 +7,7 @@ use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use serde::{Deserialize, Serialize};
 
 use super::event::Event;
+use crate::evolution::State;
 use crate::learning::Gate;
 
 /// Events that wait for the reader before progress is coalesced.
@@ -41,6 +42,7 @@ struct Desk {
     activity: Mutex<Activity>,
     sink: Sink,
     requests: (Sender<()>, Receiver<()>),
+    latest: Mutex<Option<Arc<State>>>,
 }
 
 impl Controls {
@@ -52,6 +54,7 @@ impl Controls {
             activity: Mutex::new(Activity::Running),
             sink: Sink::new(sender),
             requests: bounded(1),
+            latest: Mutex::new(None),
         };
         let desk = Arc::new(desk);
         (Self { desk }, receiver)
@@ -94,6 +97,21 @@ impl Controls {
     #[must_use]
     pub fn control_steps(&self) -> u64 {
         self.desk.gate.control_steps()
+    }
+
+    /// The latest state of the evolution; `None` while primitive subtasks are trained.
+    #[must_use]
+    pub fn latest(&self) -> Option<Arc<State>> {
+        self.lock_latest().clone()
+    }
+
+    pub(super) fn set_latest(&self, state: &Arc<State>) {
+        *self.lock_latest() = Some(Arc::clone(state));
+    }
+
+    fn lock_latest(&self) -> MutexGuard<'_, Option<Arc<State>>> {
+        let latest = &self.desk.latest;
+        latest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub(super) fn gate(&self) -> &Gate {

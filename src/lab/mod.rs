@@ -1,5 +1,5 @@
 //! One run: the evolution thread, its events and commands, the run folder,
-//! checkpoint and resume; and the evaluation of single structures.
+//! checkpoint and resume; the evaluation of single structures; taking individuals apart.
 
 mod checkpoint;
 mod checkpoint_error;
@@ -16,6 +16,7 @@ mod pulse;
 mod recorder;
 mod run;
 mod run_error;
+pub mod specimen;
 mod watch;
 mod work;
 mod worlds;

@@ -195,6 +195,7 @@ impl<W: World> Work<W> {
         evolution: &Evolution<'_, W>,
         recorder: &Sender<Message>,
     ) -> Result<(), Stopped> {
+        self.controls.set_latest(evolution.state());
         let state = Message::State(Arc::clone(evolution.state()));
         recorder.send(state).map_err(|_| Stopped)
     }

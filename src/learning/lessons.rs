@@ -123,7 +123,7 @@ impl<W: World> Agent<'_, W> {
 
 /// The pseudo-reward of a transition (Thesis Definition 2.1): 0 into a goal state, -1
 /// into another terminal state; under `all`, -1 into every state that is no goal.
-fn pseudo_reward(rule: PseudoReward, at_goal: bool, terminal: bool) -> f32 {
+pub(super) fn pseudo_reward(rule: PseudoReward, at_goal: bool, terminal: bool) -> f32 {
     let punished = !at_goal && (terminal || rule == PseudoReward::All);
     if punished { -1.0 } else { 0.0 }
 }

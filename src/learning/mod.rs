@@ -6,6 +6,7 @@
 //! seed gives the same bits everywhere.
 
 mod agent;
+mod explain;
 mod exponential;
 mod features;
 mod gate;
@@ -20,14 +21,17 @@ mod selection;
 mod situation;
 mod skills;
 mod training;
+mod verdict;
 mod visited;
 
 pub use agent::{Agent, Trial};
+pub use explain::{ActionChoice, Change, Choice, Explanation, Lesson, Level, Termination};
 pub use features::{Encoder, Features};
 pub use gate::{Gate, Stopped};
 pub use hierarchy::{CompositeValues, Hierarchy};
 pub use observe::{Observer, Update};
 pub use policy::{PolicySamples, SelectionProbabilities, average};
-pub use selection::Softmax;
+pub use selection::{Rule, Softmax};
 pub use skills::{Skill, Skills};
 pub use training::train;
+pub use verdict::Policy;

@@ -10,6 +10,19 @@ use crate::scenario::LearningModel;
 /// Few children, few actions: more lanes would mostly be empty.
 const LANES: usize = 8;
 
+/// How one of several is chosen in a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// There is no other.
+    OnlyChoice,
+    /// All alike: the control `composite_choice: random`.
+    Uniform,
+    /// By softmax (Thesis Eq. 2.12).
+    Softmax,
+    /// Epsilon-greedy, as the largest softmax probability exceeds the limit.
+    EpsilonGreedy,
+}
+
 /// Softmax selection that gives way to epsilon-greedy selection where the largest
 /// probability exceeds a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,8 +58,9 @@ impl Softmax {
         self.pick(values, &mut weights, temperature, draw)
     }
 
-    /// Writes the probability with which each of `values` is chosen.
-    pub fn probabilities(&self, values: &[f32], temperature: f32, out: &mut [f32]) {
+    /// Writes the probability with which each of `values` is chosen, and says by which
+    /// rule.
+    pub fn probabilities(&self, values: &[f32], temperature: f32, out: &mut [f32]) -> Rule {
         let count = values.len() as f32;
         let mut weights = in_lanes(values);
         boltzmann(&mut weights, temperature);
@@ -54,10 +68,12 @@ impl Softmax {
         if self.is_greedy(sum) {
             out.fill(self.epsilon / count);
             out[greedy(values)] += 1.0 - self.epsilon;
+            Rule::EpsilonGreedy
         } else {
             for (probability, weight) in out.iter_mut().zip(weights) {
                 *probability = weight / sum;
             }
+            Rule::Softmax
         }
     }
 

@@ -1,0 +1,121 @@
+//! What an individual would do all over the arena.
+
+use crate::learning::Policy;
+use crate::random::{Purpose, stream};
+use crate::worlds::scene::Scenic;
+use crate::worlds::{StateType, SubtaskId};
+
+/// Noisy readings that a cell is averaged over.
+const SAMPLES: usize = 4;
+
+/// For what a map is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapView {
+    /// Heading of the agent in radians.
+    pub heading: f64,
+    /// Index of one of the bench's variants.
+    pub variant: usize,
+    /// Cells along x.
+    pub columns: usize,
+    /// Cells along y.
+    pub rows: usize,
+}
+
+/// What an individual would do at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolicyCell {
+    /// The type of the state there.
+    pub state_type: StateType,
+    /// The primitive subtask that it most probably ends in.
+    pub primitive: SubtaskId,
+    /// With which probability.
+    pub probability: f64,
+    /// V(root).
+    pub value: f32,
+}
+
+/// What an individual would do at the centres of equal cells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolicyMap {
+    /// For what it was made.
+    pub view: MapView,
+    /// Row by row, from the largest y down, as it is drawn; `None` where the agent
+    /// cannot be or has nothing to do.
+    pub cells: Vec<Option<PolicyCell>>,
+}
+
+impl PolicyMap {
+    /// The cell in a column and a row from the top.
+    #[must_use]
+    pub fn cell(&self, column: usize, row: usize) -> Option<&PolicyCell> {
+        if column >= self.view.columns {
+            return None;
+        }
+        self.cells.get(row * self.view.columns + column)?.as_ref()
+    }
+
+    /// The smallest and the largest value in it.
+    #[must_use]
+    pub fn values(&self) -> Option<[f32; 2]> {
+        let values = self.cells.iter().flatten().map(|cell| cell.value);
+        values.fold(None, |range, value| {
+            let [low, high] = range.unwrap_or([value; 2]);
+            Some([low.min(value), high.max(value)])
+        })
+    }
+}
+
+pub(super) fn policy_map<W: Scenic>(
+    world: &W,
+    policy: &mut Policy<'_>,
+    view: MapView,
+    seed: u64,
+) -> PolicyMap {
+    let extent = world.scenery().extent;
+    let MapView { columns, rows, .. } = view;
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
+    let cells = cells.map(|[column, row]| {
+        let share = |index: usize, count: usize| (index as f64 + 0.5) / count as f64;
+        let at = [
+            extent[0] * share(column, columns),
+            extent[1] * (1.0 - share(row, rows)),
+        ];
+        let number = row * columns + column;
+        policy_cell(world, policy, view, at, [seed, number as u64])
+    });
+    PolicyMap {
+        view,
+        cells: cells.collect(),
+    }
+}
+
+fn policy_cell<W: Scenic>(
+    world: &W,
+    policy: &mut Policy<'_>,
+    view: MapView,
+    at: [f64; 2],
+    [seed, number]: [u64; 2],
+) -> Option<PolicyCell> {
+    let catalogue = world.catalogue();
+    let mut rng = stream(seed, 0, number, Purpose::PolicyMap);
+    let mut totals = vec![0.0; catalogue.primitives().count()];
+    let (mut value, mut state_type) = (0.0, catalogue.terminal());
+    for _ in 0..SAMPLES {
+        let state = world.state_at(at, view.heading, view.variant, &mut rng)?;
+        state_type = world.state_type(&state);
+        if state_type == catalogue.terminal() {
+            return None;
+        }
+        policy.look(state_type, world.percept(&state).as_ref());
+        policy.add_probabilities(&mut totals);
+        value += policy.value() / SAMPLES as f32;
+    }
+    let likeliest = catalogue.primitives().zip(&totals);
+    let (primitive, total) = likeliest.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    Some(PolicyCell {
+        state_type,
+        primitive,
+        probability: total / SAMPLES as f64,
+        value,
+    })
+}

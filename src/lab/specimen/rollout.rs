@@ -1,0 +1,254 @@
+//! An individual that acts for somebody to watch.
+
+use std::collections::VecDeque;
+
+use super::Specimen;
+use crate::evolution::{Experiment, TrialRecord};
+use crate::learning::{Agent, Explanation, Observer, Trial};
+use crate::random::Stream;
+use crate::worlds::scene::{Scenic, Snapshot};
+
+/// Trials that are remembered.
+const HISTORY: usize = 256;
+/// Places of the present trial that are remembered.
+const TRAIL: usize = 4096;
+
+/// A copy of an individual that acts and learns, one trial after the other.
+///
+/// A trial that is over stays to be looked at; the next step begins the next trial.
+pub trait Rollout: Send {
+    /// One time step, with everything that decided it and everything that it changed;
+    /// `None` if the hierarchy can do nothing, which the typing rules exclude.
+    fn step(&mut self) -> Option<StepTrace>;
+
+    /// Some time steps, as many as [`Rollout::step`] would take, and to the same end.
+    fn advance(&mut self, steps: u32);
+
+    /// Gives the present trial up and begins the next.
+    fn begin_trial(&mut self);
+
+    /// What the present state looks like.
+    fn snapshot(&self) -> Snapshot;
+
+    /// How it is getting on.
+    fn status(&self) -> &RolloutStatus;
+
+    /// The present temperature of each node; `None` for primitive ones.
+    fn temperatures(&self) -> Vec<Option<f32>>;
+}
+
+/// How a rollout is getting on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RolloutStatus {
+    /// Number of the present trial, from 1.
+    pub trial: u64,
+    /// Time steps of the present trial.
+    pub steps: u32,
+    /// How the present trial ended, if it has.
+    pub ended: Option<TrialRecord>,
+    /// The latest trials that ended, the present one too, the oldest first.
+    pub history: VecDeque<TrialRecord>,
+    /// The nodes from the root to the primitive one that acted last; the root alone
+    /// before the first step.
+    pub path: Vec<usize>,
+    /// The action that was executed last.
+    pub action: Option<usize>,
+    /// The reward for it.
+    pub reward: Option<f32>,
+    /// How often each node was invoked.
+    pub visits: Vec<u64>,
+    /// Where the agent has been in the present trial, the latest place last.
+    pub trail: VecDeque<[f64; 2]>,
+}
+
+/// One time step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepTrace {
+    /// Number of the trial, from 1.
+    pub trial: u64,
+    /// Number of the step in it, from 1.
+    pub step: u32,
+    /// The state in which the agent chose.
+    pub before: Snapshot,
+    /// The state that it came to.
+    pub after: Snapshot,
+    /// Choices, action, reward, updates.
+    pub explanation: Explanation,
+    /// How the trial ended, if it did with this step.
+    pub ended: Option<TrialRecord>,
+}
+
+impl RolloutStatus {
+    fn invoke(&mut self, node: usize, child: usize) {
+        let depth = self.path.iter().position(|&on_path| on_path == node);
+        self.path.truncate(depth.map_or(0, |depth| depth + 1));
+        self.path.push(child);
+        self.visits[child] += 1;
+    }
+
+    fn act(&mut self, action: usize, reward: f32) {
+        self.action = Some(action);
+        self.reward = Some(reward);
+    }
+}
+
+/// Follows an agent at little cost.
+struct Follower<'s>(&'s mut RolloutStatus);
+
+impl<W: Scenic> Observer<W> for Follower<'_> {
+    fn chose(&mut self, node: usize, child: usize) {
+        self.0.invoke(node, child);
+    }
+
+    fn acted(&mut self, _node: usize, action: usize, reward: f32, _state: &W::State) {
+        self.0.act(action, reward);
+    }
+}
+
+/// A rollout in a world.
+pub(super) struct WorldRollout<'b, W: Scenic> {
+    experiment: &'b Experiment<W>,
+    agent: Agent<'b, W>,
+    trial: Trial<W::State>,
+    rng: Stream,
+    composite: Vec<bool>,
+    status: RolloutStatus,
+}
+
+impl<'b, W: Scenic> WorldRollout<'b, W> {
+    pub(super) fn new(
+        experiment: &'b Experiment<W>,
+        specimen: Specimen<'_>,
+        mut rng: Stream,
+    ) -> Self {
+        let hierarchy = specimen.individual.hierarchy.clone();
+        let composite: Vec<_> = hierarchy.values().iter().map(Option::is_some).collect();
+        let mut agent = experiment.agent(hierarchy, specimen.skills.clone());
+        let start = experiment.world.draw_start(&mut rng);
+        let trial = agent.begin(&start, &mut rng);
+        let mut rollout = Self {
+            status: RolloutStatus {
+                trial: 0,
+                steps: 0,
+                ended: None,
+                history: VecDeque::new(),
+                path: Vec::new(),
+                action: None,
+                reward: None,
+                visits: vec![0; composite.len()],
+                trail: VecDeque::new(),
+            },
+            experiment,
+            agent,
+            trial,
+            rng,
+            composite,
+        };
+        rollout.note_beginning();
+        rollout
+    }
+
+    fn limit(&self) -> u32 {
+        self.experiment.scenario.evolution.trial_step_limit
+    }
+
+    fn note_beginning(&mut self) {
+        let status = &mut self.status;
+        status.trial += 1;
+        status.steps = 0;
+        status.ended = None;
+        status.path = vec![0];
+        status.action = None;
+        status.reward = None;
+        status.visits[0] += 1;
+        status.trail.clear();
+        self.note_place();
+    }
+
+    fn note_place(&mut self) {
+        let trail = &mut self.status.trail;
+        if trail.len() == TRAIL {
+            trail.pop_front();
+        }
+        trail.push_back(self.experiment.world.position(&self.trial.state));
+    }
+
+    fn note_step(&mut self) {
+        self.note_place();
+        self.status.steps = self.trial.steps;
+        if !self.trial.done && self.trial.steps < self.limit() {
+            return;
+        }
+        let record = TrialRecord {
+            steps: self.trial.steps,
+            delivered: self.trial.done,
+        };
+        self.status.ended = Some(record);
+        if self.status.history.len() == HISTORY {
+            self.status.history.pop_front();
+        }
+        self.status.history.push_back(record);
+    }
+
+    fn go_on(&mut self) {
+        if self.status.ended.is_some() {
+            self.begin_trial();
+        }
+    }
+}
+
+impl<W: Scenic> Rollout for WorldRollout<'_, W> {
+    fn step(&mut self) -> Option<StepTrace> {
+        self.go_on();
+        let (limit, before) = (self.limit(), self.snapshot());
+        let trial = &mut self.trial;
+        let explained = self.agent.advance_explained(trial, limit, &mut self.rng);
+        let explanation = explained?;
+        for level in explanation.levels.iter().filter(|level| level.chose) {
+            self.status.invoke(level.node, level.active);
+        }
+        self.status
+            .act(explanation.action.chosen, explanation.reward);
+        self.note_step();
+        Some(StepTrace {
+            trial: self.status.trial,
+            step: self.status.steps,
+            before,
+            after: self.snapshot(),
+            explanation,
+            ended: self.status.ended,
+        })
+    }
+
+    fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.go_on();
+            let limit = self.limit();
+            let follower = &mut Follower(&mut self.status);
+            self.agent
+                .advance(&mut self.trial, limit, &mut self.rng, follower);
+            self.note_step();
+        }
+    }
+
+    fn begin_trial(&mut self) {
+        let start = self.experiment.world.draw_start(&mut self.rng);
+        self.trial = self.agent.begin(&start, &mut self.rng);
+        self.note_beginning();
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        self.experiment.world.snapshot(&self.trial.state)
+    }
+
+    fn status(&self) -> &RolloutStatus {
+        &self.status
+    }
+
+    fn temperatures(&self) -> Vec<Option<f32>> {
+        let nodes = self.composite.iter().enumerate();
+        nodes
+            .map(|(node, composite)| composite.then(|| self.agent.temperature(node)))
+            .collect()
+    }
+}
