@@ -16,6 +16,7 @@
 //! | room | what is in it |
 //! | --- | --- |
 //! | [`cli`] | one file per command |
+//! | [`report`] | plans, studies, statistics, figures, exports |
 //! | [`lab`] | one run: evolution thread, events, commands, run folder, checkpoint |
 //! | [`evolution`] | population, selection, crossover, the generation loop (Algorithm 3.1) |
 //! | [`learning`] | RBF features, action selection, primitive subtasks, MAXQ-Q |
@@ -32,5 +33,6 @@ pub mod hierarchy;
 pub mod lab;
 pub mod learning;
 pub mod random;
+pub mod report;
 pub mod scenario;
 pub mod worlds;

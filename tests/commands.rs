@@ -30,6 +30,8 @@ const COMMANDS: &[&[&str]] = &[
     &["run"],
     &["resume"],
     &["evaluate"],
+    &["study"],
+    &["study", "status"],
     &["tree"],
     &["tree", "show"],
     &["tree", "check"],

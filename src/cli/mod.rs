@@ -16,6 +16,7 @@ mod scenarios;
 mod schema;
 mod signals;
 mod source;
+mod study;
 mod tree;
 
 use std::process::ExitCode;
@@ -50,6 +51,7 @@ enum Command {
     Run(run::Args),
     Resume(resume::Args),
     Evaluate(evaluate::Args),
+    Study(Box<study::Args>),
     #[command(subcommand)]
     Tree(tree::Command),
     Primitives(primitives::Args),
@@ -71,6 +73,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::main(args),
         Command::Resume(args) => resume::main(&args),
         Command::Evaluate(args) => evaluate::main(args),
+        Command::Study(args) => study::main(&args),
         Command::Tree(command) => tree::main(command),
         Command::Primitives(args) => primitives::main(args),
         Command::Check(args) => check::main(&args),

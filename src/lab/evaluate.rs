@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::evolution::{Experiment, Workers};
 use crate::hierarchy::{Tree, to_text};
@@ -26,7 +26,7 @@ pub struct Protocol {
 }
 
 /// One fresh hierarchy's scored trials.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Repeat {
     /// Time steps of each scored trial.
     pub steps: Vec<u32>,
@@ -37,7 +37,7 @@ pub struct Repeat {
 }
 
 /// The result of an evaluation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// The structure.
     pub tree: String,

@@ -1,11 +1,11 @@
 //! The result of a run: what `run` prints and `summary.json` holds.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::evolution::{GenerationRecord, RankedRecord};
 
 /// The result of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Name of the scenario.
     pub scenario: String,
@@ -28,7 +28,7 @@ pub struct Outcome {
 }
 
 /// The best individual of a generation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BestIndividual {
     /// Its id.
     pub id: u64,

@@ -1,6 +1,6 @@
 //! The shipped scenarios, built into the program so that they work in any folder.
 
-/// A scenario that is part of the program.
+/// A scenario, or a plan, that is part of the program.
 #[derive(Clone, Copy, Debug)]
 pub struct Embedded {
     /// The name it is run by.
@@ -20,6 +20,12 @@ macro_rules! embedded {
 }
 
 embedded!["environment-1", "environment-2", "environment-3", "smoke"];
+
+/// All embedded plans of studies; the names of their scenarios are those of embedded ones.
+pub const EMBEDDED_PLANS: &[Embedded] = &[Embedded {
+    name: "thesis",
+    json: include_str!("../../scenarios/studies/thesis.json"),
+}];
 
 /// The names of the embedded scenarios, for messages.
 pub(super) fn names() -> String {

@@ -18,7 +18,7 @@ mod overrides;
 mod settings;
 mod validate;
 
-pub use embedded::{EMBEDDED, Embedded};
+pub use embedded::{EMBEDDED, EMBEDDED_PLANS, Embedded};
 pub use error::{Problem, ScenarioError};
 pub use foraging::{
     ArenaModel, Exploration, FeatureModel, FenceModel, ForagingModel, MovementModel,

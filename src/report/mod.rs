@@ -1,0 +1,26 @@
+//! Studies: many runs, what they say together, and how sure that is.
+//!
+//! A [`Plan`] names scenarios, arms and seeds; a [`Study`] is its folder, in which every
+//! scenario, arm and seed has a run folder of its own. One process may do one run or all
+//! of them, on one machine or many: a run depends on nothing but the plan, so the study
+//! comes out the same.
+
+mod arm;
+mod numbers;
+mod pace;
+mod plan;
+mod plan_error;
+mod runner;
+mod single;
+mod status;
+mod study;
+
+pub use arm::{Arm, Base};
+pub use numbers::Numbers;
+pub use pace::Pace;
+pub use plan::{MAX_PLAN_BYTES, PLAN_FORMAT, Plan, Reevaluation};
+pub use plan_error::PlanError;
+pub use runner::{Happening, StudyControls, carry_out};
+pub use single::{Fresh, Single, SingleError};
+pub use status::{RunStatus, Stage, status};
+pub use study::{RunId, Study, StudyError};

@@ -1,0 +1,146 @@
+//! Lists of whole numbers as people write them: `1..30`, `1..10,15`.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// Most numbers that a list may hold.
+const MAX_COUNT: u64 = 1_000_000;
+
+/// Whole numbers in the order given, each once: numbers and ranges, both ends counted,
+/// separated by commas.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Numbers {
+    ranges: Vec<RangeInclusive<u64>>,
+}
+
+impl Numbers {
+    /// All numbers.
+    pub fn iter(&self) -> impl Iterator<Item = u64> + '_ {
+        self.ranges.iter().cloned().flatten()
+    }
+
+    /// How many numbers these are.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.ranges
+            .iter()
+            .map(|range| range.end() - range.start() + 1)
+            .sum()
+    }
+
+    /// Whether `number` is among them.
+    #[must_use]
+    pub fn contains(&self, number: u64) -> bool {
+        self.ranges.iter().any(|range| range.contains(&number))
+    }
+}
+
+impl FromStr for Numbers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut ranges: Vec<RangeInclusive<u64>> = Vec::new();
+        let mut count = 0_u64;
+        for part in text.split(',') {
+            let range = range(part.trim()).ok_or_else(|| wrong(part))?;
+            let meets = |other: &RangeInclusive<u64>| {
+                other.start() <= range.end() && range.start() <= other.end()
+            };
+            if ranges.iter().any(meets) {
+                return Err(format!("found {part:?} twice; allowed: each number once"));
+            }
+            count = count.saturating_add((range.end() - range.start()).saturating_add(1));
+            if count > MAX_COUNT {
+                return Err(format!("found {count} numbers; allowed: 1 to {MAX_COUNT}"));
+            }
+            ranges.push(range);
+        }
+        Ok(Self { ranges })
+    }
+}
+
+fn range(part: &str) -> Option<RangeInclusive<u64>> {
+    let range = match part.split_once("..") {
+        Some((first, last)) => {
+            first.parse().ok()?..=last.strip_prefix('=').unwrap_or(last).parse().ok()?
+        }
+        None => {
+            let number = part.parse().ok()?;
+            number..=number
+        }
+    };
+    (!range.is_empty()).then_some(range)
+}
+
+fn wrong(part: &str) -> String {
+    format!(
+        "found {part:?}; allowed: numbers and ranges separated by commas, such as 1..30 or 1,2,5..9"
+    )
+}
+
+impl fmt::Display for Numbers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, range) in self.ranges.iter().enumerate() {
+            let comma = if index == 0 { "" } else { "," };
+            match (range.start(), range.end()) {
+                (first, last) if first == last => write!(f, "{comma}{first}")?,
+                (first, last) => write!(f, "{comma}{first}..{last}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl TryFrom<String> for Numbers {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<Numbers> for String {
+    fn from(numbers: Numbers) -> Self {
+        numbers.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_are_read_as_people_write_them() {
+        let of = |text: &str| text.parse::<Numbers>().unwrap().iter().collect::<Vec<_>>();
+        assert_eq!(of("1..3"), [1, 2, 3]);
+        assert_eq!(of("1..=3, 7"), [1, 2, 3, 7]);
+        assert_eq!(of("5"), [5]);
+        let numbers: Numbers = "1..30,42".parse().unwrap();
+        assert_eq!(
+            (numbers.to_string().as_str(), numbers.count()),
+            ("1..30,42", 31)
+        );
+        assert!(numbers.contains(30) && !numbers.contains(31));
+    }
+
+    #[test]
+    fn what_is_no_list_is_refused() {
+        for text in [
+            "",
+            "a",
+            "3..1",
+            "1..",
+            "1-3",
+            "1,,2",
+            "1..5,3",
+            "-1",
+            "0..18446744073709551615",
+        ] {
+            assert!(text.parse::<Numbers>().is_err(), "{text:?}");
+        }
+    }
+}

@@ -1,0 +1,335 @@
+//! A plan: which scenarios, arms and seeds a study has.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::arm::{Arm, Base};
+use super::numbers::Numbers;
+use super::plan_error::PlanError;
+use crate::files::{read_text, stated_format};
+use crate::scenario::{EMBEDDED_PLANS, Scenario};
+
+/// Version of the plan format.
+pub const PLAN_FORMAT: u32 = 1;
+
+/// Largest plan that is read, in bytes; a plan may hold many scenarios.
+pub const MAX_PLAN_BYTES: u64 = 1 << 24;
+
+/// A plan with its scenarios written out. `study.json` is one, and can be used as a plan
+/// file again.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    /// Version of this format; 1.
+    pub format: u32,
+    /// Short name, of the letters that scenario names are made of.
+    pub name: String,
+    /// What the study is for, in a sentence.
+    pub description: String,
+    /// The scenarios, each with a name of its own.
+    pub scenarios: Vec<Scenario>,
+    /// The seeds.
+    pub seeds: Numbers,
+    /// The arms, each with a name of its own.
+    pub arms: Vec<Arm>,
+    /// Name of the arm that every claim is held against, if there is one.
+    pub control: Option<String>,
+    /// How winners are evaluated anew.
+    pub reevaluation: Reevaluation,
+}
+
+/// How the winner of a run is evaluated anew: fresh hierarchies of its structure, fresh
+/// trials, freshly trained sets of primitive subtasks, by seeds that no run uses and that
+/// all arms share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Reevaluation {
+    /// Trials of each repeat before scoring starts.
+    pub warmup: usize,
+    /// Scored trials of each repeat.
+    pub trials: usize,
+    /// Fresh hierarchies.
+    pub repeats: usize,
+    /// Freshly trained sets of primitive subtasks that the repeats are spread over.
+    pub banks: usize,
+}
+
+impl Default for Reevaluation {
+    /// Warm-up and scored trials as in a generation of the thesis; as many repeats as make
+    /// the standard error of one winner small against the spread between seeds.
+    fn default() -> Self {
+        Self {
+            warmup: 8,
+            trials: 8,
+            repeats: 32,
+            banks: 4,
+        }
+    }
+}
+
+/// A plan as it may be written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlanFile {
+    format: u32,
+    name: String,
+    #[serde(default)]
+    description: String,
+    /// Names, file names relative to the plan's folder, or whole scenarios.
+    scenarios: Vec<Value>,
+    seeds: Numbers,
+    /// Names of bases, or whole arms.
+    arms: Vec<Value>,
+    #[serde(default)]
+    control: Option<String>,
+    #[serde(default)]
+    reevaluation: Reevaluation,
+}
+
+impl Plan {
+    /// Reads the plan by `name`: a file where there is one, else an embedded plan.
+    ///
+    /// # Errors
+    /// When there is none, or it is not a plan that can be carried out.
+    pub fn load(name: &str) -> Result<Self, PlanError> {
+        let path = Path::new(name);
+        if !path.exists() {
+            let embedded = EMBEDDED_PLANS.iter().find(|plan| plan.name == name);
+            let plan = embedded.ok_or_else(|| PlanError::NotFound {
+                name: name.to_owned(),
+                allowed: EMBEDDED_PLANS
+                    .iter()
+                    .map(|plan| plan.name)
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            })?;
+            return Self::parse(plan.json, plan.name, Path::new(""));
+        }
+        let text = read_text(path, MAX_PLAN_BYTES).map_err(|source| PlanError::Read {
+            file: name.to_owned(),
+            source,
+        })?;
+        Self::parse(&text, name, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Whether `name` is that of a plan rather than of a scenario: an embedded plan, or a
+    /// JSON file that has arms.
+    #[must_use]
+    pub fn is_plan(name: &str) -> bool {
+        let path = Path::new(name);
+        if !path.is_file() {
+            return EMBEDDED_PLANS.iter().any(|plan| plan.name == name);
+        }
+        let text = read_text(path, MAX_PLAN_BYTES).unwrap_or_default();
+        let json: Value = serde_json::from_str(&text).unwrap_or_default();
+        json.get("arms").is_some()
+    }
+
+    /// Parses plan `text`; `file` names it in errors, scenario files are sought in `folder`.
+    ///
+    /// # Errors
+    /// When it is not a plan that can be carried out.
+    pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, PlanError> {
+        let invalid = |place: String, message: String| PlanError::Invalid {
+            file: file.to_owned(),
+            place,
+            message,
+        };
+        if let Some(found) = stated_format(text).filter(|&format| format != PLAN_FORMAT) {
+            let message = format!("found {found}; allowed: {PLAN_FORMAT}");
+            return Err(invalid(String::from("format"), message));
+        }
+        let mut json = serde_json::Deserializer::from_str(text);
+        let plan: PlanFile = serde_path_to_error::deserialize(&mut json)
+            .map_err(|error| invalid(place(error.path()), error.inner().to_string()))?;
+        json.end()
+            .map_err(|error| invalid(String::from("the end of the plan"), error.to_string()))?;
+        let scenarios = plan.scenarios.iter().enumerate().map(|(index, value)| {
+            let place = format!("{file}: scenarios[{index}]");
+            scenario(value, &place, folder).map_err(|source| PlanError::Scenario {
+                file: file.to_owned(),
+                index,
+                source: Box::new(source),
+            })
+        });
+        let scenarios = scenarios.collect::<Result<_, _>>()?;
+        let arms = plan.arms.into_iter().enumerate().map(|(index, value)| {
+            arm(value).map_err(|message| invalid(format!("arms[{index}]"), message))
+        });
+        let arms = arms.collect::<Result<_, _>>()?;
+        Self {
+            format: plan.format,
+            name: plan.name,
+            description: plan.description,
+            scenarios,
+            seeds: plan.seeds,
+            arms,
+            control: plan.control,
+            reevaluation: plan.reevaluation,
+        }
+        .checked(file)
+    }
+
+    /// A plan for scenarios given by name. The control is `random_selection` if it is
+    /// among the arms.
+    ///
+    /// # Errors
+    /// When a scenario cannot be used, or the plan cannot be carried out.
+    pub fn of(scenarios: &[String], seeds: Numbers, arms: Vec<Arm>) -> Result<Self, PlanError> {
+        let file = "the study";
+        let loaded = scenarios.iter().enumerate().map(|(index, name)| {
+            Scenario::load(name).map_err(|source| PlanError::Scenario {
+                file: file.to_owned(),
+                index,
+                source: Box::new(source),
+            })
+        });
+        let scenarios: Vec<_> = loaded.collect::<Result<_, _>>()?;
+        let control = arms.iter().find(|arm| arm.base == Base::RandomSelection);
+        Self {
+            format: PLAN_FORMAT,
+            name: scenarios
+                .iter()
+                .map(|s| s.name.as_str())
+                .collect::<Vec<_>>()
+                .join("_"),
+            description: String::new(),
+            control: control.map(|arm| arm.name.clone()),
+            scenarios,
+            seeds,
+            arms,
+            reevaluation: Reevaluation::default(),
+        }
+        .checked(file)
+    }
+
+    /// This plan if it can be carried out.
+    fn checked(self, file: &str) -> Result<Self, PlanError> {
+        let invalid = |place: &str, message: String| {
+            Err(PlanError::Invalid {
+                file: file.to_owned(),
+                place: place.to_owned(),
+                message,
+            })
+        };
+        if !is_name(&self.name) {
+            return invalid("name", format!("found {:?}; allowed: {NAMES}", self.name));
+        }
+        if self.scenarios.is_empty() || self.arms.is_empty() {
+            return invalid(
+                "scenarios, arms",
+                String::from("found none; allowed: at least one"),
+            );
+        }
+        let names: BTreeSet<_> = self
+            .scenarios
+            .iter()
+            .map(|scenario| &scenario.name)
+            .collect();
+        if names.len() != self.scenarios.len() {
+            return invalid(
+                "scenarios",
+                String::from("found two with one name; allowed: different names"),
+            );
+        }
+        let names: BTreeSet<_> = self.arms.iter().map(|arm| arm.name.as_str()).collect();
+        if names.len() != self.arms.len() {
+            return invalid(
+                "arms",
+                String::from("found two with one name; allowed: different names"),
+            );
+        }
+        if let Some(name) = names.iter().find(|name| !is_name(name)) {
+            return invalid("arms", format!("found name {name:?}; allowed: {NAMES}"));
+        }
+        if let Some(control) = self
+            .control
+            .as_deref()
+            .filter(|control| !names.contains(control))
+        {
+            let allowed = names.into_iter().collect::<Vec<_>>().join(", ");
+            return invalid("control", format!("found {control:?}; allowed: {allowed}"));
+        }
+        self.check_reevaluation(file)?;
+        for scenario in &self.scenarios {
+            for arm in &self.arms {
+                arm.apply(scenario).map_err(|source| PlanError::Arm {
+                    file: file.to_owned(),
+                    arm: arm.name.clone(),
+                    scenario: scenario.name.clone(),
+                    source: Box::new(source),
+                })?;
+            }
+        }
+        Ok(self)
+    }
+
+    fn check_reevaluation(&self, file: &str) -> Result<(), PlanError> {
+        let Reevaluation {
+            warmup,
+            trials,
+            repeats,
+            banks,
+        } = self.reevaluation;
+        for (name, found, least) in [
+            ("warmup", warmup, 0),
+            ("trials", trials, 1),
+            ("repeats", repeats, 2),
+            ("banks", banks, 1),
+        ] {
+            if !(least..=10_000).contains(&found) {
+                return Err(PlanError::Invalid {
+                    file: file.to_owned(),
+                    place: format!("reevaluation.{name}"),
+                    message: format!("found {found}; allowed: {least} to 10000"),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+const NAMES: &str = "1 to 64 of a-z, 0-9, '-', '_' and '.', not starting with '.' or '-'";
+
+fn is_name(name: &str) -> bool {
+    let letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
+    (1..=64).contains(&name.len()) && name.chars().all(letter) && !name.starts_with(['.', '-'])
+}
+
+fn place(path: &serde_path_to_error::Path) -> String {
+    match path.to_string().as_str() {
+        "." | "?" => String::from("the top level"),
+        path => path.to_owned(),
+    }
+}
+
+fn scenario(
+    value: &Value,
+    place: &str,
+    folder: &Path,
+) -> Result<Scenario, crate::scenario::ScenarioError> {
+    match value {
+        Value::String(name) => {
+            let beside = folder.join(name);
+            match beside.is_file() {
+                true => Scenario::read(&beside),
+                false => Scenario::load(name),
+            }
+        }
+        whole => Scenario::parse(&whole.to_string(), place),
+    }
+}
+
+fn arm(value: Value) -> Result<Arm, String> {
+    match &value {
+        Value::String(name) => {
+            let base = Base::find(name);
+            base.map(Arm::of)
+                .ok_or_else(|| format!("found {name:?}; allowed: {}, or an arm", Base::names()))
+        }
+        _ => serde_path_to_error::deserialize(value)
+            .map_err(|error| format!("{}: {}", error.path(), error.inner())),
+    }
+}

@@ -1,0 +1,123 @@
+//! Many runs side by side, each on one thread: that keeps every processor busy without
+//! any of them waiting for another.
+
+use std::collections::VecDeque;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::single::{Fresh, Single, SingleError};
+use super::study::{RunId, Study};
+use crate::lab::{Controls, Keep, Outcome, Run, RunError};
+use crate::learning::Gate;
+
+/// Stops the runs of a study that this process does.
+#[derive(Debug, Default)]
+pub struct StudyControls {
+    gate: Gate,
+    /// The runs under way, by their folders.
+    running: Mutex<Vec<(PathBuf, Controls)>>,
+}
+
+impl StudyControls {
+    /// Stops all runs for good; each saves what it has, and is gone on with next time.
+    pub fn stop(&self) {
+        self.gate.stop();
+        let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        running.iter().for_each(|(_, controls)| controls.stop());
+    }
+
+    /// Whether the runs were stopped.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.gate.is_stopped()
+    }
+
+    /// What computes outside of runs passes this gate.
+    pub(super) fn gate(&self) -> &Gate {
+        &self.gate
+    }
+
+    /// Waits for the end of a run, which is stopped with the study.
+    pub(super) fn follow(&self, run: Run) -> Result<Outcome, RunError> {
+        let running = || self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = run.folder.clone();
+        running().push((folder.clone(), run.controls.clone()));
+        // The study may have been stopped before the run was in the list.
+        if self.is_stopped() {
+            run.controls.stop();
+        }
+        let outcome = run.join();
+        running().retain(|(other, _)| *other != folder);
+        outcome
+    }
+}
+
+/// What happens to the runs of a study.
+#[derive(Debug)]
+pub enum Happening {
+    /// A run is begun, or gone on with.
+    Begun(RunId),
+    /// A run has come to its end, now or before.
+    Done {
+        /// The run.
+        run: RunId,
+        /// How good its winner is.
+        fresh: Box<Fresh>,
+        /// How long this took.
+        took: Duration,
+    },
+    /// A run cannot be done.
+    Failed {
+        /// The run.
+        run: RunId,
+        /// Why.
+        error: SingleError,
+    },
+}
+
+/// Does `runs`, `jobs` at a time, until all are done, have failed, or were stopped.
+/// `tell` is told what happens; it is called from the threads that do the runs.
+pub fn carry_out(
+    study: &Study,
+    runs: &[RunId],
+    jobs: NonZeroUsize,
+    keep: Keep,
+    controls: &StudyControls,
+    tell: impl Fn(Happening) + Sync,
+) {
+    let waiting: Mutex<VecDeque<RunId>> = Mutex::new(runs.iter().copied().collect());
+    let next = || {
+        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.pop_front().filter(|_| !controls.is_stopped())
+    };
+    let work = || {
+        while let Some(run) = next() {
+            tell(Happening::Begun(run));
+            let begun = Instant::now();
+            let single = Single {
+                study,
+                run,
+                keep,
+                controls,
+            };
+            match single.carry_out() {
+                Ok(fresh) => tell(Happening::Done {
+                    run,
+                    fresh: Box::new(fresh),
+                    took: begun.elapsed(),
+                }),
+                Err(SingleError::Stopped(_)) => {}
+                Err(error) => tell(Happening::Failed { run, error }),
+            }
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 1..jobs.get().min(runs.len().max(1)) {
+            scope.spawn(work);
+        }
+        work();
+    });
+}

@@ -1,0 +1,341 @@
+//! One run of a study, from wherever it is to its end: evolution, then the evaluation of
+//! its winner. It writes to its own folder alone.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::arm::{Arm, ArmError, Base};
+use super::runner::StudyControls;
+use super::study::{RunId, Study};
+use crate::evolution::{Evolution, Experiment, TreeError, Workers, read_tree};
+use crate::files::{ReadError, read_text, write_atomically};
+use crate::lab::{
+    Evaluation, FolderError, Keep, Outcome, Protocol, RunError, RunFolder, RunOptions, SetupError,
+    WorldTask, evaluate, resume, start, with_world,
+};
+use crate::learning::{Gate, Stopped};
+use crate::scenario::Scenario;
+use crate::worlds::World;
+
+/// Version of the format of `evaluation.json`.
+const FRESH_FORMAT: u32 = 1;
+
+/// Largest `evaluation.json` or `summary.json` that is read, in bytes.
+const MAX_RESULT_BYTES: u64 = 1 << 24;
+
+/// What is added to a run's seed for the evaluation of its winner: far from the seeds that
+/// people give to runs, so that neither primitives nor trials are those of any run.
+const FRESH_SEED_OFFSET: u64 = 1 << 40;
+
+/// `evaluation.json`: the winner of a run, evaluated anew.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fresh {
+    /// Version of this format.
+    pub format: u32,
+    /// Seed of the evaluation.
+    pub seed: u64,
+    /// Trials of each repeat before scoring started.
+    pub warmup: usize,
+    /// Its result.
+    pub evaluation: Evaluation,
+}
+
+/// Why a run of a study could not be done.
+#[derive(Debug, Error)]
+pub enum SingleError {
+    /// The run was stopped before it was done; it can be gone on with.
+    #[error("stopped")]
+    Stopped(#[from] Stopped),
+    /// The arm does not fit the scenario.
+    #[error(transparent)]
+    Arm(#[from] ArmError),
+    /// The scenario cannot be made ready.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// Its folder cannot be used.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// The run cannot begin, or had to end.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Its folder holds something else.
+    #[error("{path}: holds another run; allowed: that of this study's plan, {expected}")]
+    Another {
+        /// The file.
+        path: String,
+        /// What should be there.
+        expected: String,
+    },
+    /// A file of the run cannot be read.
+    #[error("{path}: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// Why.
+        source: ReadError,
+    },
+    /// A file of the run is not what it should be.
+    #[error("{path}: {message}")]
+    Misfit {
+        /// The file.
+        path: String,
+        /// What was found and what is allowed.
+        message: String,
+    },
+    /// A file of the run cannot be written.
+    #[error("{path}: {source}")]
+    Write {
+        /// The file.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The operating system gives no threads.
+    #[error("cannot start threads: {0}")]
+    Threads(String),
+}
+
+/// A run of a study and how to do it.
+#[derive(Debug)]
+pub struct Single<'s> {
+    /// The study.
+    pub study: &'s Study,
+    /// The run.
+    pub run: RunId,
+    /// Which generations' checkpoints are kept.
+    pub keep: Keep,
+    /// By which it is stopped.
+    pub controls: &'s StudyControls,
+}
+
+impl Single<'_> {
+    /// Brings the run to its end; one that is done stays as it is.
+    ///
+    /// # Errors
+    /// When it is stopped, or cannot be done.
+    pub fn carry_out(&self) -> Result<Fresh, SingleError> {
+        let folder = self.study.run_folder(&self.run);
+        if let (Some(_), Some(fresh)) = (summary(&folder)?, fresh(&folder)?) {
+            return Ok(fresh);
+        }
+        let scenario = self
+            .study
+            .arm(&self.run)
+            .apply(self.study.scenario(&self.run))?;
+        if summary(&folder)?.is_none() {
+            self.evolve(&folder, &scenario)?;
+        }
+        self.evaluate(&folder, scenario)
+    }
+
+    fn evolve(&self, folder: &Path, scenario: &Scenario) -> Result<(), SingleError> {
+        let options = RunOptions {
+            threads: 1,
+            keep: self.keep,
+            force: false,
+        };
+        let run = match folder.join("run.json").is_file() {
+            false => start(self.with_budget(scenario)?, self.run.seed, folder, &options)?,
+            true => {
+                self.check_origin(folder, scenario)?;
+                resume(folder, None, &options)?
+            }
+        };
+        let outcome = self.controls.follow(run)?;
+        match outcome.stopped {
+            true => Err(Stopped.into()),
+            false => Ok(()),
+        }
+    }
+
+    /// What is in the folder is this run; only its budget may be another.
+    fn check_origin(&self, folder: &Path, expected: &Scenario) -> Result<(), SingleError> {
+        let manifest = RunFolder::read_manifest(folder)?;
+        let mut found = manifest.scenario;
+        if self.study.arm(&self.run).base.is_matched() {
+            found.evolution.generation_limit = expected.evolution.generation_limit;
+        }
+        match found == *expected && manifest.seed == self.run.seed {
+            true => Ok(()),
+            false => Err(SingleError::Another {
+                path: folder.join("run.json").display().to_string(),
+                expected: self.study.name(&self.run),
+            }),
+        }
+    }
+
+    /// The scenario with the budget of its arm.
+    fn with_budget(&self, scenario: &Scenario) -> Result<Scenario, SingleError> {
+        let mut scenario = scenario.clone();
+        if self.study.arm(&self.run).base.is_matched() {
+            scenario.evolution.generation_limit = self.evolved_generations()?;
+        }
+        Ok(scenario)
+    }
+
+    /// How many generations the evolved run of the same scenario, settings and seed has. It
+    /// is looked up where that run is done, and computed where it is not: the answer is
+    /// the same, so the order of runs does not matter.
+    fn evolved_generations(&self) -> Result<u64, SingleError> {
+        let own = self.study.arm(&self.run);
+        let is_pair = |arm: &Arm| arm.base == Base::Evolved && arm.settings == own.settings;
+        let pair = self.study.plan.arms.iter().position(is_pair);
+        if let Some(arm) = pair {
+            let folder = self.study.run_folder(&RunId { arm, ..self.run });
+            if let Some(outcome) = summary(&folder)? {
+                return Ok(outcome.generations);
+            }
+        }
+        let evolved = Arm {
+            base: Base::Evolved,
+            ..own.clone()
+        };
+        let scenario = evolved.apply(self.study.scenario(&self.run))?;
+        let task = Generations {
+            seed: self.run.seed,
+            gate: self.controls.gate(),
+        };
+        with_world(scenario, task)?
+    }
+
+    fn evaluate(&self, folder: &Path, scenario: Scenario) -> Result<Fresh, SingleError> {
+        let path = folder.join("evaluation.json");
+        let _locked = RunFolder::open(folder)?;
+        let misfit = |message| SingleError::Misfit {
+            path: folder.join("summary.json").display().to_string(),
+            message,
+        };
+        let best = summary(folder)?.and_then(|outcome| outcome.best);
+        let tree = best.map(|best| best.tree);
+        let tree = tree.ok_or_else(|| misfit(String::from("names no best individual")))?;
+        let plan = self.study.plan.reevaluation;
+        let protocol = Protocol {
+            warmup: plan.warmup,
+            trials: plan.trials,
+            repeats: plan.repeats,
+            banks: plan.banks,
+            seed: self.run.seed.wrapping_add(FRESH_SEED_OFFSET),
+        };
+        let task = Evaluate {
+            tree: &tree,
+            protocol: &protocol,
+            gate: self.controls.gate(),
+        };
+        let evaluation = with_world(scenario, task)?.map_err(|error| match error {
+            Unevaluated::Stopped => SingleError::Stopped(Stopped),
+            Unevaluated::Tree(error) => misfit(format!("best.tree: {error}")),
+            Unevaluated::Threads(error) => SingleError::Threads(error),
+        })?;
+        let fresh = Fresh {
+            format: FRESH_FORMAT,
+            seed: protocol.seed,
+            warmup: protocol.warmup,
+            evaluation,
+        };
+        let written = serde_json::to_vec(&fresh)
+            .map_err(std::io::Error::from)
+            .and_then(|bytes| write_atomically(&path, &[bytes.as_slice(), b"\n"].concat()));
+        written.map_err(|source| SingleError::Write {
+            path: path.display().to_string(),
+            source,
+        })?;
+        Ok(fresh)
+    }
+}
+
+/// The result of the run in a folder; none before it is over.
+///
+/// # Errors
+/// When the file is not a result.
+pub(super) fn summary(folder: &Path) -> Result<Option<Outcome>, SingleError> {
+    read(folder.join("summary.json"))
+}
+
+/// The evaluation of the winner of the run in a folder; none before it is done.
+///
+/// # Errors
+/// When the file is not an evaluation of this version.
+pub(super) fn fresh(folder: &Path) -> Result<Option<Fresh>, SingleError> {
+    let path = folder.join("evaluation.json");
+    let fresh: Option<Fresh> = read(path.clone())?;
+    match &fresh {
+        Some(found) if found.format != FRESH_FORMAT => Err(SingleError::Misfit {
+            path: path.display().to_string(),
+            message: format!("format: found {}; allowed: {FRESH_FORMAT}", found.format),
+        }),
+        _ => Ok(fresh),
+    }
+}
+
+fn read<T: for<'t> Deserialize<'t>>(path: PathBuf) -> Result<Option<T>, SingleError> {
+    // A file that is not there is the usual case while a study is under way.
+    if !fs::exists(&path).unwrap_or(true) {
+        return Ok(None);
+    }
+    let shown = path.display().to_string();
+    let text = read_text(&path, MAX_RESULT_BYTES).map_err(|source| SingleError::Read {
+        path: shown.clone(),
+        source,
+    })?;
+    let mut json = serde_json::Deserializer::from_str(&text);
+    let value = serde_path_to_error::deserialize(&mut json);
+    value.map(Some).map_err(|error| SingleError::Misfit {
+        path: shown,
+        message: format!("at {}: {}", error.path(), error.inner()),
+    })
+}
+
+/// How long an evolution takes, computed without a folder.
+struct Generations<'g> {
+    seed: u64,
+    gate: &'g Gate,
+}
+
+impl WorldTask for Generations<'_> {
+    type Output = Result<u64, SingleError>;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        let workers = Workers::new(1).map_err(|error| SingleError::Threads(error.to_string()))?;
+        let mut evolution = Evolution::begin(&experiment, &workers, self.seed, self.gate)?;
+        while !evolution.is_over() {
+            evolution.step(self.gate, |_| {})?;
+        }
+        Ok(evolution.state().generation)
+    }
+}
+
+struct Evaluate<'e> {
+    tree: &'e str,
+    protocol: &'e Protocol,
+    gate: &'e Gate,
+}
+
+enum Unevaluated {
+    Stopped,
+    Tree(TreeError),
+    Threads(String),
+}
+
+impl WorldTask for Evaluate<'_> {
+    type Output = Result<Evaluation, Unevaluated>;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        let depth = experiment.scenario.evolution.maximum_depth;
+        let tree =
+            read_tree(self.tree, experiment.catalogue(), depth).map_err(Unevaluated::Tree)?;
+        let workers = Workers::new(1).map_err(|error| Unevaluated::Threads(error.to_string()))?;
+        let evaluation = evaluate(
+            &experiment,
+            &tree,
+            self.protocol,
+            &workers,
+            self.gate,
+            |_| {},
+        );
+        evaluation.map_err(|_| Unevaluated::Stopped)
+    }
+}
