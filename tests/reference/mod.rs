@@ -353,19 +353,19 @@ impl<'a> MaxqQ<'a> {
     }
 
     /// Eq. 3.7.
-    fn c_tilde(&self, i: usize, s: &State, a: usize) -> f64 {
+    pub fn c_tilde(&self, i: usize, s: &State, a: usize) -> f64 {
         let (features, at) = self.features(i, s);
         dot(&self.theta_c_tilde[a][at..], features)
     }
 
     /// Eq. 3.8.
-    fn c(&self, i: usize, s: &State, a: usize) -> f64 {
+    pub fn c(&self, i: usize, s: &State, a: usize) -> f64 {
         let (features, at) = self.features(i, s);
         dot(&self.theta_c[a][at..], features)
     }
 
     /// Eq. 3.9, all actions.
-    fn q_prim(&self, i: usize, s: &State) -> Vec<f64> {
+    pub fn q_prim(&self, i: usize, s: &State) -> Vec<f64> {
         let features = s.phi(self.rows[i].input);
         let thetas = self.theta_q[self.skill[i]].iter();
         thetas.map(|theta| dot(theta, features)).collect()
