@@ -247,3 +247,72 @@ fn scale(name: &str, values: &[f32]) -> Scale {
         values: values.iter().copied().map(f64::from).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Purpose, stream};
+    use crate::scenario::{Scenario, WorldModel};
+    use crate::worlds::foraging::{AVOID, CARRYING, SEARCHING};
+
+    fn world() -> ForagingWorld {
+        let WorldModel::Foraging(model) = Scenario::load("environment-3").unwrap().world;
+        ForagingWorld::new(&model).unwrap()
+    }
+
+    #[test]
+    fn snapshots_show_what_the_state_says() {
+        let world = world();
+        let mut rng = stream(1, 0, 0, Purpose::Life);
+        let (mut seen, mut carried) = (0, 0);
+        for round in 0..400 {
+            let start = world.draw_start(&mut rng);
+            let heading = libm::atan2(start.heading.y, start.heading.x);
+            let variant = round % 2;
+            let at = start.position.into();
+            let mut state = world.state_at(at, heading, variant, &mut rng).unwrap();
+            world.step(&mut state, AVOID, 0, &mut rng);
+            if matches!(state.task, Task::Delivered(_)) {
+                continue;
+            }
+            let shown = world.snapshot(&state);
+            assert_eq!(shown.at, world.position(&state));
+            assert_eq!(shown.state_type, world.state_type(&state));
+            let (sin, cos) = libm::sincos(shown.heading.unwrap());
+            assert!((state.pose.heading - Vector2::new(cos, sin)).norm() < 1e-9);
+            let sees = matches!(shown.state_type, BATTERY_VISIBLE | NEST_VISIBLE);
+            assert_eq!(shown.sees.is_some(), sees);
+            assert_eq!(shown.readings[5].value.is_some(), sees);
+            let carries = matches!(shown.state_type, CARRYING | NEST_VISIBLE);
+            assert_eq!(shown.carries.is_some(), carries);
+            let left = world.arena.batteries.len() - usize::from(carries);
+            assert_eq!(shown.marks.len(), left);
+            let [low, high] = world.sensors.proximity_range.map(f64::from);
+            for [from, to] in shown.rays {
+                let length = (Point2::from(to) - Point2::from(from)).norm();
+                assert!((low - 1e-3..=high + 1e-3).contains(&length));
+                let centre = (Point2::from(from) - state.pose.position).norm();
+                assert!((centre - world.radius).abs() < 1e-9);
+            }
+            seen += usize::from(sees);
+            carried += usize::from(carries);
+        }
+        assert!(seen > 20 && carried > 100);
+    }
+
+    #[test]
+    fn nobody_can_be_in_walls_or_outside() {
+        let world = world();
+        let mut rng = stream(1, 0, 0, Purpose::Life);
+        for at in [
+            [1700.0, 600.0],
+            [-500.0, 300.0],
+            [3200.0, 300.0],
+            [40.0, 900.0],
+        ] {
+            assert!(world.state_at(at, 0.0, 0, &mut rng).is_none());
+        }
+        let state = world.state_at([1500.0, 1500.0], 0.3, 0, &mut rng).unwrap();
+        assert!([SEARCHING, BATTERY_VISIBLE].contains(&world.state_type(&state)));
+    }
+}
