@@ -25,7 +25,7 @@ const SEED: u64 = 3;
 /// A finished run.
 struct Finished {
     folder: tempfile::TempDir,
-    bench: Box<dyn Bench>,
+    bench: &'static dyn Bench,
     records: Vec<GenerationRecord>,
 }
 
@@ -51,8 +51,8 @@ impl Finished {
         self.folder.path().join("run")
     }
 
-    fn archive(&self) -> Archive<'_> {
-        Archive::new(&*self.bench, &self.path(), None)
+    fn archive(&self) -> Archive {
+        Archive::new(self.bench, &self.path(), None)
     }
 }
 
@@ -262,7 +262,7 @@ fn files_of_another_run_and_damaged_ones_are_errors_that_name_them() {
     let run = finished();
     let kept = run.path().join("generations").join("000002.json");
     let other = bench(short(&[]), SEED + 1).unwrap();
-    let mut archive = Archive::new(&*other, &run.path(), None);
+    let mut archive = Archive::new(other, &run.path(), None);
     let error = archive.generation(2).unwrap_err();
     assert!(matches!(error, ArchiveError::Foreign { .. }), "{error}");
     assert!(error.to_string().contains("000002.json: seed"), "{error}");
@@ -275,7 +275,7 @@ fn files_of_another_run_and_damaged_ones_are_errors_that_name_them() {
     let error = run.archive().generation(2).unwrap_err();
     assert!(error.to_string().contains("000002.json: crc32"), "{error}");
     let empty = tempfile::tempdir().unwrap();
-    let nothing = Archive::new(&*run.bench, Path::new(empty.path()), None);
+    let nothing = Archive::new(run.bench, Path::new(empty.path()), None);
     assert!(matches!(
         nothing.latest(),
         Err(ArchiveError::Nothing { .. })
@@ -289,7 +289,7 @@ fn a_live_run_shows_its_latest_population_without_the_disk() {
     let scenario = short(&[]);
     let run = start(scenario.clone(), SEED, &path, &threads(1)).unwrap();
     let bench = bench(scenario, SEED).unwrap();
-    let archive = Archive::new(&*bench, Path::new("/nowhere"), Some(run.controls.clone()));
+    let archive = Archive::new(bench, Path::new("/nowhere"), Some(run.controls.clone()));
     let seen = run.events.iter().find_map(|event| match event {
         Event::Generation(record) if record.generation == 2 => Some(record.generation),
         _ => None,

@@ -64,19 +64,19 @@ pub enum ArchiveError {
 }
 
 /// The populations of one run, read when they are asked for.
-pub struct Archive<'b> {
-    bench: &'b dyn Bench,
+pub struct Archive {
+    bench: &'static dyn Bench,
     folder: PathBuf,
     live: Option<Controls>,
     /// The latest used first.
     cache: VecDeque<Arc<State>>,
 }
 
-impl<'b> Archive<'b> {
+impl Archive {
     /// The archive of the run in `folder`; of a run in this process if its controls are
     /// given.
     #[must_use]
-    pub fn new(bench: &'b dyn Bench, folder: &Path, live: Option<Controls>) -> Self {
+    pub fn new(bench: &'static dyn Bench, folder: &Path, live: Option<Controls>) -> Self {
         Self {
             bench,
             folder: folder.to_owned(),

@@ -18,9 +18,12 @@ use crate::worlds::scene::{Scenery, Scenic};
 
 /// Makes a scenario ready for looking at individuals of a run with this seed.
 ///
+/// A bench is made once for a run and stays until the process ends, so that whatever lies
+/// on it can be handed around freely.
+///
 /// # Errors
 /// When the scenario's world or its hierarchies cannot be built.
-pub fn bench(scenario: Scenario, seed: u64) -> Result<Box<dyn Bench>, SetupError> {
+pub fn bench(scenario: Scenario, seed: u64) -> Result<&'static dyn Bench, SetupError> {
     with_world(scenario, Setup { seed })
 }
 
@@ -29,16 +32,16 @@ struct Setup {
 }
 
 impl WorldTask for Setup {
-    type Output = Box<dyn Bench>;
+    type Output = &'static dyn Bench;
 
     fn carry_out<W: Scenic + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        Box::new(WorldBench {
+        Box::leak(Box::new(WorldBench {
             scenery: experiment.world.scenery(),
             variants: experiment.world.variants(),
             samples: OnceLock::new(),
             seed: self.seed,
             experiment,
-        })
+        }))
     }
 }
 
@@ -52,7 +55,7 @@ struct WorldBench<W: Scenic> {
     samples: OnceLock<PolicySamples<W::Percept>>,
 }
 
-impl<W: Scenic> WorldBench<W> {
+impl<W: Scenic + 'static> WorldBench<W> {
     fn policy(&self, specimen: Specimen<'_>) -> Policy<'_> {
         let Experiment {
             scenario,
@@ -81,7 +84,7 @@ impl<W: Scenic> WorldBench<W> {
     }
 }
 
-impl<W: Scenic> Bench for WorldBench<W> {
+impl<W: Scenic + 'static> Bench for WorldBench<W> {
     fn scenario(&self) -> &Scenario {
         &self.experiment.scenario
     }
@@ -102,7 +105,7 @@ impl<W: Scenic> Bench for WorldBench<W> {
         &self.variants
     }
 
-    fn rollout<'b>(&'b self, specimen: Specimen<'_>, number: u64) -> Box<dyn Rollout + 'b> {
+    fn rollout(&'static self, specimen: Specimen<'_>, number: u64) -> Box<dyn Rollout> {
         let id = specimen.individual.id;
         let rng = stream(self.seed, number, id, Purpose::Watching);
         Box::new(WorldRollout::new(&self.experiment, specimen, rng))

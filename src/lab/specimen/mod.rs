@@ -77,7 +77,7 @@ pub trait Bench: Send + Sync {
 
     /// A copy of an individual that acts and learns for somebody to watch. `number`
     /// tells its random stream from those of other rollouts of the same individual.
-    fn rollout<'b>(&'b self, specimen: Specimen<'_>, number: u64) -> Box<dyn Rollout + 'b>;
+    fn rollout(&'static self, specimen: Specimen<'_>, number: u64) -> Box<dyn Rollout>;
 
     /// The learned values of a node, over the inputs that it looks at.
     fn profiles(&self, specimen: Specimen<'_>, node: usize) -> Vec<Profile>;

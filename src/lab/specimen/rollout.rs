@@ -106,18 +106,18 @@ impl<W: Scenic> Observer<W> for Follower<'_> {
 }
 
 /// A rollout in a world.
-pub(super) struct WorldRollout<'b, W: Scenic> {
-    experiment: &'b Experiment<W>,
-    agent: Agent<'b, W>,
+pub(super) struct WorldRollout<W: Scenic + 'static> {
+    experiment: &'static Experiment<W>,
+    agent: Agent<'static, W>,
     trial: Trial<W::State>,
     rng: Stream,
     composite: Vec<bool>,
     status: RolloutStatus,
 }
 
-impl<'b, W: Scenic> WorldRollout<'b, W> {
+impl<W: Scenic> WorldRollout<W> {
     pub(super) fn new(
-        experiment: &'b Experiment<W>,
+        experiment: &'static Experiment<W>,
         specimen: Specimen<'_>,
         mut rng: Stream,
     ) -> Self {
@@ -197,7 +197,7 @@ impl<'b, W: Scenic> WorldRollout<'b, W> {
     }
 }
 
-impl<W: Scenic> Rollout for WorldRollout<'_, W> {
+impl<W: Scenic> Rollout for WorldRollout<W> {
     fn step(&mut self) -> Option<StepTrace> {
         self.go_on();
         let (limit, before) = (self.limit(), self.snapshot());
