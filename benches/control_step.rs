@@ -27,7 +27,9 @@ fn control_step(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(u64::from(STEPS)));
     for name in ["environment-1", "environment-2", "environment-3"] {
         let scenario = Scenario::load(name).expect("shipped");
-        let WorldModel::Foraging(model) = &scenario.world;
+        let WorldModel::Foraging(model) = &scenario.world else {
+            panic!("a foraging scenario")
+        };
         let world = ForagingWorld::new(model).expect("shipped");
         let encoder = Encoder::new(world.catalogue());
         let gate = Gate::default();

@@ -42,7 +42,9 @@ fn still_scenario() -> Scenario {
 }
 
 fn foraging(scenario: &Scenario) -> ForagingWorld {
-    let WorldModel::Foraging(model) = &scenario.world;
+    let WorldModel::Foraging(model) = &scenario.world else {
+        panic!("a foraging scenario")
+    };
     ForagingWorld::new(model).unwrap()
 }
 
@@ -69,13 +71,16 @@ fn learned(id: u64, tree: Tree, catalogue: &Catalogue, rng: &mut SmallRng) -> In
         }
         let temperature = rng.random_range(0.1..1.9);
         let subtask = tree.subtask(node);
-        let random = CompositeValues::from_vectors(subtask, catalogue, temperature, &vectors);
+        let children: Vec<_> = tree.children(node).map(|c| tree.subtask(c)).collect();
+        let random =
+            CompositeValues::from_vectors(subtask, &children, catalogue, temperature, &vectors);
         *value = random.unwrap();
     }
     Individual {
         id,
         origin: Origin::HandCoded,
         hierarchy: Hierarchy::from_parts(tree, values).unwrap(),
+        skills: None,
     }
 }
 

@@ -27,8 +27,10 @@ use rand::RngExt;
 const SCENARIOS: [&str; 4] = ["environment-1", "environment-2", "environment-3", "smoke"];
 
 fn model(scenario: &str) -> ForagingModel {
-    let WorldModel::Foraging(model) = Scenario::load(scenario).unwrap().world;
-    model
+    let WorldModel::Foraging(model) = Scenario::load(scenario).unwrap().world else {
+        panic!("a foraging scenario")
+    };
+    *model
 }
 
 fn world(scenario: &str) -> ForagingWorld {

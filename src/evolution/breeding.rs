@@ -85,6 +85,7 @@ pub(super) fn random_individuals(
             id,
             origin: Origin::Random,
             hierarchy: newborn(tree, &scenario.learning, catalogue),
+            skills: None,
         }
     };
     (0..count).map(draw).collect()
@@ -113,5 +114,6 @@ fn copy(from: &Individual, id: u64) -> Individual {
         id,
         origin: Origin::Copied { from: from.id },
         hierarchy: from.hierarchy.clone(),
+        skills: from.skills.clone(),
     }
 }

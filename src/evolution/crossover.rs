@@ -7,7 +7,7 @@ use crate::hierarchy::check;
 use crate::learning::{CompositeValues, Hierarchy};
 use crate::random::Stream;
 use crate::scenario::{Inheritance, LearningModel, Scenario};
-use crate::worlds::Catalogue;
+use crate::worlds::{Catalogue, SubtaskId};
 
 /// Pairs of crossover sites drawn before two parents count as incompatible. Trees
 /// have some ten nodes, so parents that fail here have hardly a valid pair.
@@ -72,8 +72,8 @@ fn offspring(
         let subtask = tree.subtask(node);
         let name = subtask.name(catalogue).to_owned();
         if darwinian || path.contains(&node) {
-            let children = tree.children(node).count();
-            *value = initial(&scenario.learning, subtask, children, catalogue);
+            let children: Vec<_> = tree.children(node).map(|c| tree.subtask(c)).collect();
+            *value = initial(&scenario.learning, subtask, &children, catalogue);
             reset.push(name);
         } else {
             let from = if graft.contains(&node) {
@@ -98,6 +98,7 @@ fn offspring(
             .to_owned(),
     };
     let hierarchy = Hierarchy::from_parts(tree, values);
+    let skills = receiver.skills.clone().filter(|_| !darwinian);
     Individual {
         id,
         origin: Origin::Crossover {
@@ -107,13 +108,14 @@ fn offspring(
             reset,
         },
         hierarchy: hierarchy.unwrap_or_else(|| unreachable!("values were spliced as the tree was")),
+        skills,
     }
 }
 
 fn initial(
     learning: &LearningModel,
-    subtask: crate::worlds::SubtaskId,
-    children: usize,
+    subtask: SubtaskId,
+    children: &[SubtaskId],
     catalogue: &Catalogue,
 ) -> CompositeValues {
     let temperature = learning.initial_temperature as f32;

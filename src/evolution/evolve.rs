@@ -66,7 +66,8 @@ impl<'e, W: World> Evolution<'e, W> {
             individuals,
             skills,
             control_steps: primitives
-                .map(|primitive| u64::from(experiment.world.training(primitive).steps))
+                .filter_map(|primitive| experiment.world.training(primitive))
+                .map(|training| u64::from(training.steps))
                 .sum(),
             converged: false,
         };
@@ -149,6 +150,7 @@ impl<'e, W: World> Evolution<'e, W> {
             .filter_map(|&index| pairs[index].take())
             .collect();
         let control_steps = self.state.control_steps + lived_steps;
+        let own = experiment.scenario.learning.primitive_learning == PrimitiveLearning::Individual;
         let record = self.record(generation, &ranked, &skills, control_steps, gate)?;
         self.state = Arc::new(State {
             generation,
@@ -156,7 +158,9 @@ impl<'e, W: World> Evolution<'e, W> {
                 .into_iter()
                 .map(|(individual, life)| Individual {
                     hierarchy: life.hierarchy,
-                    ..individual
+                    skills: own.then_some(life.skills),
+                    id: individual.id,
+                    origin: individual.origin,
                 })
                 .collect(),
             skills,
@@ -177,8 +181,9 @@ impl<'e, W: World> Evolution<'e, W> {
     ) -> Result<(Vec<Life>, Skills), Stopped> {
         let starts = Starts::draw(self.experiment, self.seed, generation);
         let lived = AtomicUsize::new(0);
-        let one = |index: usize, skills: Skills| {
+        let one = |index: usize, shared: Skills| {
             let individual = &population[index];
+            let skills = individual.skills.clone().unwrap_or(shared);
             let life = live(
                 self.experiment,
                 individual,
@@ -286,9 +291,14 @@ impl<'e, W: World> Evolution<'e, W> {
             ..
         } = self.experiment;
         let all = self.workers.map((0..better.len()).collect(), |index| {
-            let hierarchy = &better[index].1.hierarchy;
+            let life = &better[index].1;
+            let learning = &scenario.learning;
+            let skills = match learning.primitive_learning {
+                PrimitiveLearning::Individual => &life.skills,
+                PrimitiveLearning::Frozen | PrimitiveLearning::Shared => skills,
+            };
             self.samples
-                .probabilities(world, encoder, &scenario.learning, hierarchy, skills, gate)
+                .probabilities(world, encoder, learning, &life.hierarchy, skills, gate)
         })?;
         Ok(average(&all))
     }
@@ -326,6 +336,7 @@ fn first_population<W: World>(experiment: &Experiment<W>, seed: u64) -> Vec<Indi
         id,
         origin: Origin::HandCoded,
         hierarchy: experiment.newborn(tree.clone()),
+        skills: None,
     });
     individuals.collect()
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::learning::Hierarchy;
+use crate::learning::{Hierarchy, Skills};
 
 /// A member of the population.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,9 @@ pub struct Individual {
     pub origin: Origin,
     /// Its structure and what it has learned.
     pub hierarchy: Hierarchy,
+    /// Its own primitive subtasks; `None` where it begins with, or stays with, the copy
+    /// of the population.
+    pub skills: Option<Skills>,
 }
 
 /// How an individual came into its generation.

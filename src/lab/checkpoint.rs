@@ -8,11 +8,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
 use super::checkpoint_error::CheckpointError;
-use super::population_file::{IndividualFile, PrimitiveFile};
+use super::population_file::{IndividualFile, PrimitiveFile, skills};
 use crate::evolution::{Experiment, State};
-use crate::learning::Skills;
 use crate::scenario::Scenario;
-use crate::worlds::{Catalogue, World};
+use crate::worlds::World;
 
 /// Version of the checkpoint format.
 pub const CHECKPOINT_FORMAT: u32 = 1;
@@ -194,7 +193,7 @@ impl Checkpoint {
         Ok(State {
             generation: self.generation,
             individuals: individuals.collect::<Result<_, _>>()?,
-            skills: self.skills(catalogue)?,
+            skills: skills(&self.primitives, "state.primitives", catalogue)?,
             next_id: self.next_id,
             control_steps: self.control_steps,
             converged: self.converged,
@@ -214,20 +213,6 @@ impl Checkpoint {
             }
         }
         Ok(())
-    }
-
-    fn skills(&self, catalogue: &Catalogue) -> Result<Skills, CheckpointError> {
-        let skills = self
-            .primitives
-            .iter()
-            .enumerate()
-            .map(|(index, file)| file.skill(&format!("state.primitives[{index}]"), catalogue));
-        Skills::new(skills.collect::<Result<_, _>>()?, catalogue).ok_or_else(|| {
-            CheckpointError::misfit(
-                "state.primitives",
-                String::from("allowed: each primitive subtask once, in order"),
-            )
-        })
     }
 }
 

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::checkpoint_error::CheckpointError;
 use crate::evolution::{Individual, Origin, TreeError, read_tree};
 use crate::hierarchy::to_text;
-use crate::learning::{CompositeValues, Hierarchy, Skill};
-use crate::scenario::{LearningModel, Scenario};
+use crate::learning::{CompositeValues, Hierarchy, Skill, Skills};
+use crate::scenario::{LearningModel, PrimitiveLearning, Scenario};
 use crate::worlds::{Catalogue, SubtaskId};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +26,9 @@ pub(super) struct IndividualFile {
     tree: String,
     /// In preorder.
     composites: Vec<CompositeFile>,
+    /// Its own primitive subtasks, if each individual has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    primitives: Option<Vec<PrimitiveFile>>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,7 +43,7 @@ struct CompositeFile {
 #[serde(deny_unknown_fields)]
 struct ChildFile {
     subtask: String,
-    /// Parameters of C~, one block of features per active state type.
+    /// Parameters of C~, the blocks of features one after the other.
     c_tilde: Vec<f32>,
     /// Parameters of C.
     c: Vec<f32>,
@@ -96,16 +99,21 @@ impl IndividualFile {
                     .collect(),
             })
             .collect();
-        let finite = composites
+        let primitives = individual.skills.as_ref().map(|skills| -> Vec<_> {
+            let skills = skills.all().iter();
+            skills
+                .map(|skill| PrimitiveFile::of(skill, catalogue))
+                .collect()
+        });
+        let children = composites.iter().flat_map(|composite| &composite.children);
+        let own = primitives
             .iter()
-            .flat_map(|composite| &composite.children)
-            .all(|child| {
-                child
-                    .c_tilde
-                    .iter()
-                    .chain(&child.c)
-                    .all(|value| value.is_finite())
-            });
+            .flatten()
+            .flat_map(|primitive| &primitive.actions);
+        let learned = children
+            .flat_map(|child| [&child.c_tilde, &child.c])
+            .chain(own);
+        let finite = learned.flatten().all(|value| value.is_finite());
         if !finite {
             return Err(CheckpointError::Diverged { id: individual.id });
         }
@@ -114,6 +122,7 @@ impl IndividualFile {
             origin: individual.origin.clone(),
             tree: to_text(tree, catalogue),
             composites,
+            primitives,
         })
     }
 
@@ -152,13 +161,12 @@ impl IndividualFile {
                 )
             })?;
             check_temperature(&place, file.temperature, &scenario.learning)?;
-            values.push(Some(file.values(subtask, catalogue).ok_or_else(|| {
-                let width = catalogue.width(subtask);
-                CheckpointError::misfit(
-                    &place,
-                    format!("allowed: {width} numbers in c_tilde and in c"),
-                )
-            })?));
+            let children: Vec<_> = tree.children(node).map(|c| tree.subtask(c)).collect();
+            values.push(Some(
+                file.values(subtask, &children, catalogue).ok_or_else(|| {
+                    CheckpointError::misfit(&place, allowed_widths(subtask, &children, catalogue))
+                })?,
+            ));
         }
         let extra = files.next().is_some();
         let hierarchy = Hierarchy::from_parts(tree, values).filter(|_| !extra);
@@ -172,18 +180,70 @@ impl IndividualFile {
             id: self.id,
             origin: self.origin.clone(),
             hierarchy,
+            skills: self.skills(place, catalogue, &scenario.learning)?,
         })
+    }
+
+    fn skills(
+        &self,
+        place: &str,
+        catalogue: &Catalogue,
+        learning: &LearningModel,
+    ) -> Result<Option<Skills>, CheckpointError> {
+        let place = format!("{place}.primitives");
+        let own = learning.primitive_learning == PrimitiveLearning::Individual;
+        match &self.primitives {
+            Some(files) if own => skills(files, &place, catalogue).map(Some),
+            None => Ok(None),
+            Some(_) => Err(CheckpointError::misfit(
+                &place,
+                String::from("allowed: only with primitive_learning individual"),
+            )),
+        }
     }
 }
 
+/// The primitive subtasks that a file lists.
+pub(super) fn skills(
+    files: &[PrimitiveFile],
+    place: &str,
+    catalogue: &Catalogue,
+) -> Result<Skills, CheckpointError> {
+    let all = files.iter().enumerate();
+    let all = all.map(|(index, file)| file.skill(&format!("{place}[{index}]"), catalogue));
+    Skills::new(all.collect::<Result<_, _>>()?, catalogue).ok_or_else(|| {
+        CheckpointError::misfit(
+            place,
+            String::from("allowed: each primitive subtask once, in order"),
+        )
+    })
+}
+
+fn allowed_widths(subtask: SubtaskId, children: &[SubtaskId], catalogue: &Catalogue) -> String {
+    let widths = children.iter().map(|&child| {
+        let width = catalogue.completion_width(subtask, child);
+        format!("{width} for {}", child.name(catalogue))
+    });
+    let widths: Vec<_> = widths.collect();
+    format!(
+        "allowed: numbers in c_tilde and in c: {}",
+        widths.join(", ")
+    )
+}
+
 impl CompositeFile {
-    fn values(&self, subtask: SubtaskId, catalogue: &Catalogue) -> Option<CompositeValues> {
+    fn values(
+        &self,
+        subtask: SubtaskId,
+        children: &[SubtaskId],
+        catalogue: &Catalogue,
+    ) -> Option<CompositeValues> {
         let vectors: Vec<_> = self
             .children
             .iter()
             .map(|child| [child.c_tilde.clone(), child.c.clone()])
             .collect();
-        CompositeValues::from_vectors(subtask, catalogue, self.temperature, &vectors)
+        CompositeValues::from_vectors(subtask, children, catalogue, self.temperature, &vectors)
     }
 }
 

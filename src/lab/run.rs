@@ -143,7 +143,7 @@ pub fn resume(
 
 fn workers(scenario: &Scenario, options: &RunOptions) -> Result<Workers, RunError> {
     let threads = match scenario.learning.primitive_learning {
-        PrimitiveLearning::Frozen => options.threads,
+        PrimitiveLearning::Frozen | PrimitiveLearning::Individual => options.threads,
         // All individuals teach one copy, in turn.
         PrimitiveLearning::Shared => 1,
     };

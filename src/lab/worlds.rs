@@ -4,8 +4,10 @@ use thiserror::Error;
 
 use crate::evolution::{Experiment, ExperimentError};
 use crate::scenario::{Scenario, WorldModel};
+use crate::worlds::cliff::{CliffError, CliffWorld};
 use crate::worlds::foraging::{ForagingError, ForagingWorld};
 use crate::worlds::scene::Scenic;
+use crate::worlds::taxi::{TaxiError, TaxiWorld};
 
 /// Something to be done with the experiment of a scenario, whatever its world.
 pub trait WorldTask {
@@ -22,6 +24,12 @@ pub enum SetupError {
     /// Its foraging world cannot be built.
     #[error(transparent)]
     Foraging(#[from] ForagingError),
+    /// Its taxi world cannot be built.
+    #[error(transparent)]
+    Taxi(#[from] TaxiError),
+    /// Its cliff world cannot be built.
+    #[error(transparent)]
+    Cliff(#[from] CliffError),
     /// Its first hierarchies cannot be used.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
@@ -35,6 +43,14 @@ pub fn with_world<T: WorldTask>(scenario: Scenario, task: T) -> Result<T::Output
     match &scenario.world {
         WorldModel::Foraging(model) => {
             let world = ForagingWorld::new(model)?;
+            Ok(task.carry_out(Experiment::new(scenario, world)?))
+        }
+        WorldModel::Taxi(model) => {
+            let world = TaxiWorld::new(model)?;
+            Ok(task.carry_out(Experiment::new(scenario, world)?))
+        }
+        WorldModel::Cliff(model) => {
+            let world = CliffWorld::new(model)?;
             Ok(task.carry_out(Experiment::new(scenario, world)?))
         }
     }

@@ -185,7 +185,7 @@ impl<'r, W: World> Agent<'r, W> {
         std::mem::swap(&mut self.now, &mut self.before);
         self.perceive(&trial.state);
         trial.done = self.now.state_type == self.world.catalogue().terminal();
-        if self.model.primitive_learning == PrimitiveLearning::Shared {
+        if self.model.primitive_learning != PrimitiveLearning::Frozen {
             let map = self.mind.plan.nodes[node].map;
             let features = self.mind.encoder.encode(map, &mut self.before.features);
             let step = self.model.learning_rate as f32 * (reward - value);

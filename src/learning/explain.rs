@@ -246,7 +246,7 @@ impl Past<'_> {
         let rule = self
             .softmax
             .probabilities(&values, temperature, &mut probabilities);
-        let learns = self.model.primitive_learning == PrimitiveLearning::Shared;
+        let learns = self.model.primitive_learning != PrimitiveLearning::Frozen;
         let learned = learns.then(|| Change {
             before: values[chosen],
             after: after.action_values(again, skill)[chosen],

@@ -1,19 +1,36 @@
-//! Normalised Gaussian RBF features (Thesis Eq. 2.22).
+//! Features of inputs: normalised Gaussians (Thesis Eq. 2.22), or tables.
 //!
 //! On a full grid with one width per axis the normalised features factorise into
 //! products of Gaussians over a few inputs each: five proximity sensors with two
 //! centres each need 8 + 4 exponentials, not 32. A map whose last axes are those of
-//! another map starts from its features.
+//! another map starts from its features. A table is one-hot: with it the linear
+//! approximator gives one entry of the parameters, and learns that one.
 
 use pulp::Arch;
 
 use super::grid::{Compute, Grid, Group};
-use crate::worlds::{Catalogue, MapId};
+use super::linear::padded;
+use crate::worlds::{Catalogue, FeatureKind, FeatureMap, Index, MapId};
 
 /// Computes features from inputs.
 #[derive(Clone, Debug)]
 pub struct Encoder {
-    grids: Vec<Grid>,
+    maps: Vec<Map>,
+}
+
+/// A feature map, prepared.
+#[derive(Clone, Debug)]
+enum Map {
+    Gaussian(Grid),
+    Table(Table),
+}
+
+/// One feature for each combination of the values of some inputs.
+#[derive(Clone, Debug)]
+struct Table {
+    /// Padded number of features.
+    width: usize,
+    indices: Vec<Index>,
 }
 
 /// The features of one state: each map's are computed when first asked for, and once.
@@ -32,32 +49,35 @@ impl Encoder {
     #[must_use]
     pub fn new(catalogue: &Catalogue) -> Self {
         let maps = &catalogue.maps;
+        let prepare = |map: &FeatureMap| match &map.kind {
+            FeatureKind::Gaussian(_) => Map::Gaussian(Grid::new(map, maps)),
+            FeatureKind::Table(indices) => Map::Table(Table {
+                width: padded(map.width()),
+                indices: indices.clone(),
+            }),
+        };
         Self {
-            grids: maps.iter().map(|map| Grid::new(map, maps)).collect(),
+            maps: maps.iter().map(prepare).collect(),
         }
     }
 
     /// Length of the feature vectors of a map, padded with zeros to whole lanes.
     #[must_use]
     pub fn width(&self, map: MapId) -> usize {
-        self.grids[map.index()].width
+        self.maps[map.index()].width()
     }
 
     /// Room for the features of a state.
     #[must_use]
     pub fn features(&self) -> Features {
-        let gaussians = self.grids.iter().map(|grid| {
-            let lanes = grid.groups.iter().map(Group::lanes);
-            lanes.sum()
+        let gaussians = self.maps.iter().map(|map| match map {
+            Map::Gaussian(grid) => grid.groups.iter().map(Group::lanes).sum(),
+            Map::Table(_) => 0,
         });
         Features {
             inputs: Vec::new(),
             gaussians: vec![0.0; gaussians.max().unwrap_or(0)],
-            maps: self
-                .grids
-                .iter()
-                .map(|grid| vec![0.0; grid.width])
-                .collect(),
+            maps: self.maps.iter().map(|map| vec![0.0; map.width()]).collect(),
             ready: 0,
         }
     }
@@ -74,7 +94,13 @@ impl Encoder {
     }
 
     fn compute(&self, map: MapId, features: &mut Features) {
-        let grid = &self.grids[map.index()];
+        let grid = match &self.maps[map.index()] {
+            Map::Gaussian(grid) => grid,
+            Map::Table(table) => {
+                table.compute(&features.inputs, &mut features.maps[map.index()]);
+                return;
+            }
+        };
         if let Some((base, _)) = grid.base {
             self.encode(base, features);
         }
@@ -90,6 +116,31 @@ impl Encoder {
             out: &mut out,
         });
         features.maps[map.index()] = out;
+    }
+}
+
+impl Map {
+    fn width(&self) -> usize {
+        match self {
+            Self::Gaussian(grid) => grid.width,
+            Self::Table(table) => table.width,
+        }
+    }
+}
+
+impl Table {
+    fn compute(&self, inputs: &[f32], out: &mut [f32]) {
+        out.fill(0.0);
+        out[self.feature(inputs)] = 1.0;
+    }
+
+    /// The feature that is one; values that an input cannot have count as its last.
+    fn feature(&self, inputs: &[f32]) -> usize {
+        let indices = self.indices.iter();
+        indices.fold(0, |place, index| {
+            let value = (inputs[index.input] as usize).min(index.values - 1);
+            place * index.values + value
+        })
     }
 }
 
@@ -112,7 +163,9 @@ mod tests {
     use proptest::prelude::*;
 
     fn world(width: RbfWidth, proximity_centres: usize) -> ForagingWorld {
-        let WorldModel::Foraging(mut model) = Scenario::load("environment-1").unwrap().world;
+        let WorldModel::Foraging(mut model) = Scenario::load("environment-1").unwrap().world else {
+            unreachable!("it is a foraging scenario");
+        };
         model.features.rbf_width = width;
         model.features.proximity_centres = proximity_centres;
         ForagingWorld::new(&model).unwrap()
@@ -154,7 +207,7 @@ mod tests {
             features.load(&inputs);
             for (index, map) in world.catalogue().maps.iter().enumerate() {
                 let encoded = encoder.encode(MapId(index as u8), &mut features);
-                let expected = by_definition(&map.axes, &inputs);
+                let expected = by_definition(map.axes(), &inputs);
                 for (feature, expected) in encoded.iter().zip(&expected) {
                     prop_assert!((f64::from(*feature) - expected).abs() < 1e-6);
                 }

@@ -41,14 +41,16 @@ pub(super) struct Grid {
 
 impl Grid {
     pub(super) fn new(map: &FeatureMap, maps: &[FeatureMap]) -> Self {
+        let all = map.axes();
         let ends_in = |(_, other): &(usize, &FeatureMap)| {
-            other.axes.len() < map.axes.len() && map.axes.ends_with(&other.axes)
+            let axes = other.axes();
+            (1..all.len()).contains(&axes.len()) && all.ends_with(axes)
         };
         let base = maps.iter().enumerate().filter(ends_in);
-        let base = base.max_by_key(|(_, other)| other.axes.len());
-        let own = map.axes.len() - base.map_or(0, |(_, other)| other.axes.len());
+        let base = base.max_by_key(|(_, other)| other.axes().len());
+        let own = all.len() - base.map_or(0, |(_, other)| other.axes().len());
         let mut groups = Vec::new();
-        let mut axes = &map.axes[..own];
+        let mut axes = &all[..own];
         while !axes.is_empty() {
             let group = |count| &axes[axes.len() - count..];
             let fits = |&count: &usize| count == 1 || size(group(count)) <= LANES;

@@ -7,18 +7,19 @@ use crate::worlds::{Catalogue, SubtaskId};
 /// What a composite subtask has learned: its temperature and, for each child, the
 /// parameters of the completion functions C~ and C (Thesis Eq. 3.7, 3.8).
 ///
-/// A parameter vector has one block of features for each state type that the
-/// subtask is active in; blocks are padded to whole lanes.
+/// A parameter vector has the blocks of features that the catalogue says
+/// ([`Blocks`](crate::worlds::Blocks)), each padded to whole lanes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompositeValues {
     /// Temperature of softmax selection.
     pub temperature: f32,
     /// For each child C~ and then C.
     pub(super) parameters: Vec<f32>,
-    layout: Layout,
+    /// For each child.
+    layouts: Vec<Layout>,
 }
 
-/// How the parameters of a composite subtask lie in memory.
+/// How the parameters of a completion function lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Layout {
     blocks: usize,
@@ -26,11 +27,11 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(subtask: SubtaskId, catalogue: &Catalogue) -> Self {
-        let subtask = catalogue.subtask(subtask);
+    fn of(parent: SubtaskId, child: SubtaskId, catalogue: &Catalogue) -> Self {
+        let map = catalogue.completion_map(parent, child);
         Self {
-            blocks: subtask.active.len(),
-            width: catalogue.maps[subtask.map.index()].width(),
+            blocks: catalogue.subtask(parent).blocks(),
+            width: catalogue.maps[map.index()].width(),
         }
     }
 
@@ -45,75 +46,85 @@ impl Layout {
 }
 
 impl CompositeValues {
-    /// A subtask that has learned nothing.
+    /// A subtask with these children that has learned nothing.
     #[must_use]
     pub fn new(
         subtask: SubtaskId,
-        children: usize,
+        children: &[SubtaskId],
         catalogue: &Catalogue,
         temperature: f32,
         initial: f32,
     ) -> Self {
-        let layout = Layout::of(subtask, catalogue);
-        let mut block = vec![initial; layout.width];
-        block.resize(layout.stride(), 0.0);
-        Self {
+        let mut values = Self {
             temperature,
-            parameters: block.repeat(2 * children * layout.blocks),
-            layout,
+            parameters: Vec::new(),
+            layouts: Vec::with_capacity(children.len()),
+        };
+        for &child in children {
+            let layout = Layout::of(subtask, child, catalogue);
+            let mut block = vec![initial; layout.width];
+            block.resize(layout.stride(), 0.0);
+            let both = block.repeat(2 * layout.blocks);
+            values.parameters.extend(both);
+            values.layouts.push(layout);
         }
+        values
     }
 
-    /// A subtask with the given parameter vectors, C~ and C for each child; `None`
-    /// if their lengths are not those of the catalogue.
+    /// A subtask with the given parameter vectors, C~ and C for each of these children;
+    /// `None` if their number or lengths are not those of the catalogue.
     #[must_use]
     pub fn from_vectors(
         subtask: SubtaskId,
+        children: &[SubtaskId],
         catalogue: &Catalogue,
         temperature: f32,
         vectors: &[[Vec<f32>; 2]],
     ) -> Option<Self> {
-        let layout = Layout::of(subtask, catalogue);
-        let mut parameters = Vec::with_capacity(2 * vectors.len() * layout.vector());
-        for vector in vectors.iter().flatten() {
-            if vector.len() != layout.blocks * layout.width {
-                return None;
-            }
-            for block in vector.chunks_exact(layout.width) {
-                parameters.extend_from_slice(block);
-                parameters.resize(parameters.len().next_multiple_of(layout.stride()), 0.0);
+        let layouts = children
+            .iter()
+            .map(|&child| Layout::of(subtask, child, catalogue));
+        let layouts: Vec<_> = layouts.collect();
+        let mut parameters = Vec::new();
+        for (layout, vectors) in layouts.iter().zip(vectors) {
+            for vector in vectors {
+                if vector.len() != layout.blocks * layout.width {
+                    return None;
+                }
+                for block in vector.chunks_exact(layout.width) {
+                    parameters.extend_from_slice(block);
+                    parameters.resize(parameters.len().next_multiple_of(layout.stride()), 0.0);
+                }
             }
         }
-        Some(Self {
+        (vectors.len() == children.len()).then_some(Self {
             temperature,
             parameters,
-            layout,
+            layouts,
         })
     }
 
     /// The parameter vectors, C~ and C for each child, without padding.
     #[must_use]
     pub fn vectors(&self) -> Vec<[Vec<f32>; 2]> {
-        let unpad = |vector: &[f32]| -> Vec<f32> {
-            let blocks = vector.chunks_exact(self.layout.stride());
+        let mut rest = &*self.parameters;
+        let mut next = |layout: &Layout| -> Vec<f32> {
+            let (vector, others) = rest.split_at(layout.vector());
+            rest = others;
+            let blocks = vector.chunks_exact(layout.stride());
             blocks
-                .flat_map(|block| &block[..self.layout.width])
+                .flat_map(|block| &block[..layout.width])
                 .copied()
                 .collect()
         };
-        self.parameters
-            .chunks_exact(2 * self.layout.vector())
-            .map(|child| {
-                let (c_tilde, c) = child.split_at(self.layout.vector());
-                [unpad(c_tilde), unpad(c)]
-            })
-            .collect()
+        let layouts = self.layouts.iter();
+        layouts.map(|layout| [next(layout), next(layout)]).collect()
     }
 
     /// Number of children.
     #[must_use]
     pub fn children(&self) -> usize {
-        self.parameters.len() / (2 * self.layout.vector())
+        self.layouts.len()
     }
 }
 
@@ -131,9 +142,9 @@ impl Hierarchy {
     pub fn new(tree: Tree, catalogue: &Catalogue, temperature: f32, initial: f32) -> Self {
         let value = |node| {
             let subtask = tree.subtask(node);
-            let children = tree.children(node).count();
-            (children > 0)
-                .then(|| CompositeValues::new(subtask, children, catalogue, temperature, initial))
+            let children: Vec<_> = tree.children(node).map(|c| tree.subtask(c)).collect();
+            (!children.is_empty())
+                .then(|| CompositeValues::new(subtask, &children, catalogue, temperature, initial))
         };
         let values = (0..tree.nodes().len()).map(value).collect();
         Self { tree, values }

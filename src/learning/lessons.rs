@@ -54,7 +54,7 @@ impl<W: World> Agent<'_, W> {
             }
         }
         inside += pseudo_reward;
-        let map = mind.plan.nodes[node].map;
+        let map = mind.plan.nodes[child].completion.map;
         if mind.plan.nodes[child].skill.is_some() {
             let before = &mut self.before;
             let state_type = before.state_type;
@@ -131,7 +131,7 @@ pub(super) fn pseudo_reward(rule: PseudoReward, at_goal: bool, terminal: bool) -
 /// What is to be learned in successive states of one type.
 struct Lesson<'a> {
     state_type: StateType,
-    /// Of the composite subtask's map, the most recent state last.
+    /// Of the completion functions' map, the most recent state last.
     features: &'a [f32],
     /// N in the most recent state.
     steps: usize,
@@ -155,7 +155,7 @@ impl Mind<'_> {
         let Some(values) = &mut self.values[node] else {
             return;
         };
-        let plan = &self.plan.nodes[node];
+        let plan = &self.plan.nodes[child].completion;
         let at = self.plan.block(child, lesson.state_type);
         let (first, second) = values.parameters[at..].split_at_mut(plan.vector);
         let replay = Replay {

@@ -11,12 +11,20 @@ pub(super) struct PlanNode {
     active: StateTypes,
     pub(super) goal: StateTypes,
     pub(super) parent: Option<usize>,
-    /// Padded length of one block of features.
-    pub(super) stride: usize,
-    /// Padded length of one parameter vector: a block per active state type.
-    pub(super) vector: usize,
+    /// Its parent's completion functions for it.
+    pub(super) completion: CompletionPlan,
     /// The place among the catalogue's primitives; `None` for a composite subtask.
     pub(super) skill: Option<usize>,
+}
+
+/// How the completion functions of a parent for a child lie in memory.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CompletionPlan {
+    pub(super) map: MapId,
+    /// Padded length of one block of features.
+    pub(super) stride: usize,
+    /// Padded length of one parameter vector.
+    pub(super) vector: usize,
 }
 
 /// A tree prepared for execution.
@@ -44,31 +52,37 @@ impl Plan {
             children: Vec::new(),
             types,
         };
+        let mut free = vec![0; tree.nodes().len()];
         for (index, node) in tree.nodes().iter().enumerate() {
             let subtask = catalogue.subtask(node.subtask);
-            let stride = width(subtask.map);
-            let siblings = node.parent.map(|parent| tree.children(parent));
-            let slot = siblings.map_or(0, |mut all| all.position(|s| s == index).unwrap_or(0));
+            let parent = node.parent.unwrap_or(index);
+            let over = catalogue.subtask(tree.subtask(parent));
+            let map = catalogue.completion_map(tree.subtask(parent), node.subtask);
+            let stride = width(map);
+            let vector = over.blocks() * stride;
+            // C~ and C of the children lie one after the other.
+            let at = free[parent];
+            free[parent] += node.parent.map_or(0, |_| 2 * vector);
             plan.nodes.push(PlanNode {
                 subtask: node.subtask,
                 map: subtask.map,
                 active: subtask.active,
                 goal: subtask.goal(),
                 parent: node.parent,
-                stride,
-                vector: subtask.active.len() * stride,
+                completion: CompletionPlan {
+                    map,
+                    stride,
+                    vector,
+                },
                 skill: catalogue.primitives().position(|p| p == node.subtask),
             });
-            let parent = plan.nodes[node.parent.unwrap_or(index)];
             for state_type in (0..types).map(|t| StateType(t as u8)) {
                 let acts = able[index].contains(state_type);
                 let choices = tree.children(index).filter(|_| acts);
                 plan.children
                     .extend(choices.filter(|&child| able[child].contains(state_type)));
                 plan.ends.push(plan.children.len());
-                let rank = parent.active.rank(state_type);
-                plan.blocks
-                    .push(2 * slot * parent.vector + rank * parent.stride);
+                plan.blocks.push(at + over.block(state_type) * stride);
             }
         }
         plan

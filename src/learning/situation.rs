@@ -175,7 +175,7 @@ impl Mind<'_> {
         if cached.state == now.state {
             return cached.value;
         }
-        let plan = &self.plan.nodes[node];
+        let plan = &self.plan.nodes[child].completion;
         let offset = self.plan.block(child, now.state_type) + which as usize * plan.vector;
         let parameters = self.parameters(node);
         let features = self.encoder.encode(plan.map, &mut now.features);

@@ -20,7 +20,8 @@ pub struct Skill {
     rows: Vec<Row>,
 }
 
-/// The one copy of the primitive subtasks that a population shares (Thesis 3.1).
+/// All primitive subtasks: the one copy that a population shares (Thesis 3.1), or an
+/// individual's own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skills {
     skills: Vec<Skill>,

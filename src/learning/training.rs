@@ -18,6 +18,8 @@ use crate::worlds::{SubtaskId, World};
 /// temperature falls at the end of each *episode*: falling at every step it would be
 /// cold before rare inputs, such as targets at the edge of the view, were seen.
 ///
+/// Where the world has no training for it, the subtask has learned nothing.
+///
 /// # Errors
 /// When the gate is stopped.
 pub fn train<W: World>(
@@ -31,11 +33,14 @@ pub fn train<W: World>(
     let catalogue = world.catalogue();
     let map = catalogue.subtask(primitive).map;
     let actions = catalogue.subtask(primitive).actions();
-    let training = world.training(primitive);
+    let untrained = Skill::new(primitive, catalogue, model.initial_parameter as f32);
+    let Some(training) = world.training(primitive) else {
+        return Ok(untrained);
+    };
     let softmax = Softmax::new(model);
     let limit = model.temperature_limit as f32;
     let mut temperature = model.initial_temperature as f32;
-    let mut skill = Skill::new(primitive, catalogue, model.initial_parameter as f32);
+    let mut skill = untrained;
     let mut features = encoder.features();
     let mut room = skill.values();
     let mut steps = 0;

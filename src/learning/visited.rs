@@ -14,7 +14,7 @@ use crate::worlds::{MapId, StateType};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Visited<P> {
     pub(super) types: Vec<StateType>,
-    /// Feature vectors for each map that a composite with composite children uses.
+    /// Feature vectors for each map that a completion function of a composite child uses.
     features: Vec<LoggedFeatures>,
     /// Percepts, where the bootstrap value is taken in the updated state.
     pub(super) percepts: Option<Vec<P>>,
@@ -32,13 +32,12 @@ impl<P> Visited<P> {
     pub(super) fn new(plan: &Plan, model: &LearningModel) -> Self {
         let mut features: Vec<LoggedFeatures> = Vec::new();
         for node in plan.nodes.iter().filter(|node| node.skill.is_none()) {
-            let Some(parent) = node.parent.map(|parent| &plan.nodes[parent]) else {
-                continue;
-            };
-            if features.iter().all(|logged| logged.map != parent.map) {
+            let completion = &node.completion;
+            let known = features.iter().any(|logged| logged.map == completion.map);
+            if node.parent.is_some() && !known {
                 features.push(LoggedFeatures {
-                    map: parent.map,
-                    width: parent.stride,
+                    map: completion.map,
+                    width: completion.stride,
                     vectors: Vec::new(),
                 });
             }

@@ -133,3 +133,31 @@ pub const TRAINING_STEPS: u32 = 100_000;
 pub const EXPLORING_EPISODE_STEPS: u32 = 100;
 /// Steps of a training episode of Approach and Turn, whose targets are soon lost.
 pub const TARGET_EPISODE_STEPS: u32 = 5;
+
+/// The taxi's city, Thesis Figure 2.6 (Dietterich 2000, Figure 1).
+pub const TAXI_MAP: [&str; 5] = [
+    "R: | : :G",
+    " : | : : ",
+    " : : : : ",
+    " | : | : ",
+    "Y| : |B: ",
+];
+/// Reward of every action of the taxi, Thesis 2.2.2.
+pub const TAXI_STEP_REWARD: f64 = -1.0;
+/// Added where the passenger is put down at his destination, Thesis 2.2.2: that action
+/// brings 19, and the values printed there come out.
+pub const TAXI_DELIVERY_REWARD: f64 = 20.0;
+/// Added where a pickup or putdown is illegal, Thesis 2.2.2: that action brings -11.
+pub const TAXI_ILLEGAL_REWARD: f64 = -10.0;
+
+/// Columns of the cliff walk, Thesis Figure 2.3.
+pub const CLIFF_WIDTH: usize = 12;
+/// Rows of the cliff walk, Thesis Figure 2.3.
+pub const CLIFF_HEIGHT: usize = 4;
+/// Reward of a step that does not lead into the cliff, Thesis 2.1.3.
+pub const CLIFF_STEP_REWARD: f64 = -1.0;
+/// Reward of a step into the cliff, Thesis 2.1.3.
+pub const CLIFF_FALL_REWARD: f64 = -100.0;
+/// Sigma of the cliff walk's Gaussians over their spacing: that of Thesis Figure 2.4,
+/// sigma 10 at a spacing of 30. Wide Gaussians cannot follow the edge of the cliff.
+pub const CLIFF_RBF_WIDTH_CELLS: f64 = 1.0 / 3.0;

@@ -19,7 +19,15 @@ macro_rules! embedded {
     };
 }
 
-embedded!["environment-1", "environment-2", "environment-3", "smoke"];
+embedded![
+    "environment-1",
+    "environment-2",
+    "environment-3",
+    "taxi",
+    "taxi-fickle",
+    "cliff",
+    "smoke",
+];
 
 /// All embedded plans of studies; the names of their scenarios are those of embedded ones.
 pub const EMBEDDED_PLANS: &[Embedded] = &[Embedded {

@@ -10,14 +10,17 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+mod cliff;
 pub mod defaults;
 mod embedded;
 mod error;
 mod foraging;
 mod overrides;
 mod settings;
+mod taxi;
 mod validate;
 
+pub use cliff::{CliffBegin, CliffModel};
 pub use embedded::{EMBEDDED, EMBEDDED_PLANS, Embedded};
 pub use error::{Problem, ScenarioError};
 pub use foraging::{
@@ -28,6 +31,7 @@ pub use settings::{
     CompletionBootstrap, CompositeChoice, CoolOn, EvolutionModel, Inheritance, LearningModel,
     PrimitiveLearning, PseudoReward, Selection, Variation,
 };
+pub use taxi::TaxiModel;
 
 /// The version of the scenario format that this program reads.
 pub const FORMAT: u32 = 1;
@@ -61,7 +65,11 @@ pub struct Scenario {
 #[serde(rename_all = "snake_case")]
 pub enum WorldModel {
     /// The foraging task of thesis chapter 4.
-    Foraging(ForagingModel),
+    Foraging(Box<ForagingModel>),
+    /// The taxi problem of thesis chapter 2.
+    Taxi(TaxiModel),
+    /// The cliff walk of thesis chapter 2.
+    Cliff(CliffModel),
 }
 
 impl Scenario {

@@ -34,7 +34,7 @@ pub struct LearningModel {
     pub pseudo_reward: PseudoReward,
     /// How a composite subtask chooses among its children.
     pub composite_choice: CompositeChoice,
-    /// Whether primitive subtasks go on learning during evolution.
+    /// Whether primitive subtasks learn during evolution.
     pub primitive_learning: PrimitiveLearning,
 }
 
@@ -102,7 +102,7 @@ pub enum CompositeChoice {
     Random,
 }
 
-/// Whether the trained primitive subtasks go on learning during evolution.
+/// Whether the primitive subtasks learn during evolution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PrimitiveLearning {
@@ -111,6 +111,9 @@ pub enum PrimitiveLearning {
     Frozen,
     /// All individuals teach the one copy, in turn; such a run uses one thread.
     Shared,
+    /// Each individual has its own and teaches them itself, from nothing where they are
+    /// not trained. Offspring inherit those of the parent whose root they have.
+    Individual,
 }
 
 /// Genetic programming of hierarchies (Thesis 3.2, Algorithm 3.1, Table 4.7).

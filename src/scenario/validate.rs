@@ -7,9 +7,9 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use super::{
-    ArenaModel, EvolutionModel, FeatureModel, FenceModel, ForagingModel, LearningModel,
-    MovementModel, Problem, RobotModel, Scenario, SensorModel, TargetModel, TrainingModel,
-    WorldModel,
+    ArenaModel, CliffModel, EvolutionModel, FeatureModel, FenceModel, ForagingModel, LearningModel,
+    MovementModel, PrimitiveLearning, Problem, RobotModel, Scenario, SensorModel, TargetModel,
+    TaxiModel, TrainingModel, WorldModel,
 };
 
 /// Wheel speed limit of the Cyber Rodent in mm/s, Thesis 4.2.
@@ -34,8 +34,11 @@ pub(super) fn problems(scenario: &Scenario) -> Vec<Problem> {
     );
     match &scenario.world {
         WorldModel::Foraging(model) => check.within("world.foraging", |c| foraging(c, model)),
+        WorldModel::Taxi(model) => check.within("world.taxi", |c| taxi(c, model)),
+        WorldModel::Cliff(model) => check.within("world.cliff", |c| cliff(c, model)),
     }
-    check.within("learning", |c| learning(c, &scenario.learning));
+    let trained = matches!(scenario.world, WorldModel::Foraging(_));
+    check.within("learning", |c| learning(c, &scenario.learning, trained));
     check.within("evolution", |c| evolution(c, &scenario.evolution));
     check.problems
 }
@@ -291,7 +294,30 @@ fn training(check: &mut Check, model: &TrainingModel) {
     );
 }
 
-fn learning(check: &mut Check, learning: &LearningModel) {
+fn taxi(check: &mut Check, model: &TaxiModel) {
+    check.range("slip", model.slip, 0.0..=1.0);
+    check.range("change_of_mind", model.change_of_mind, 0.0..=1.0);
+    reward(check, "step_reward", model.step_reward);
+    reward(check, "delivery_reward", model.delivery_reward);
+    reward(check, "illegal_reward", model.illegal_reward);
+}
+
+fn cliff(check: &mut Check, model: &CliffModel) {
+    check.range("width", model.width, 3..=64);
+    check.range("height", model.height, 2..=64);
+    reward(check, "step_reward", model.step_reward);
+    reward(check, "fall_reward", model.fall_reward);
+    check.range("rbf_width_cells", model.rbf_width_cells, 0.1..=10.0);
+}
+
+fn learning(check: &mut Check, learning: &LearningModel, trained: bool) {
+    let learns = trained || learning.primitive_learning != PrimitiveLearning::Frozen;
+    check.rule(
+        learns,
+        "primitive_learning",
+        "\"frozen\"",
+        "\"individual\" or \"shared\": the primitive subtasks of this world are not trained beforehand",
+    );
     check.range("learning_rate", learning.learning_rate, 0.0..=1.0);
     check.range("discount", learning.discount, 0.0..=1.0);
     check.range(

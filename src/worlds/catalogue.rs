@@ -1,4 +1,4 @@
-//! What a world tells about its subtasks: names, active states, goals, inputs.
+//! What a world tells about its subtasks: names, active states, goals, features.
 
 use std::fmt;
 
@@ -134,21 +134,64 @@ pub struct Axis {
     pub sigma: f64,
 }
 
-/// A grid of normalised Gaussian features over some inputs (Thesis Eq. 2.22).
+/// One input of a table: a whole number from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Index {
+    /// Index into the world's percept.
+    pub input: usize,
+    /// The number of values that it can have.
+    pub values: usize,
+}
+
+/// How features are made of inputs; the last input varies fastest in the parameter
+/// vectors.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FeatureKind {
+    /// A grid of normalised Gaussian features (Thesis Eq. 2.22).
+    Gaussian(Vec<Axis>),
+    /// One feature for each combination of values, one where it is the case and zero
+    /// elsewhere: the linear approximator then is a table. A table without inputs has
+    /// one entry.
+    Table(Vec<Index>),
+}
+
+/// The features of some inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeatureMap {
     /// What the map covers, for people.
     pub name: &'static str,
-    /// The inputs; the last one varies fastest in the parameter vectors.
-    pub axes: Vec<Axis>,
+    /// The inputs, and what is made of them.
+    pub kind: FeatureKind,
 }
 
 impl FeatureMap {
-    /// Number of features: the product of the centres of all axes.
+    /// Number of features: the product over all inputs.
     #[must_use]
     pub fn width(&self) -> usize {
-        self.axes.iter().map(|axis| axis.centres).product()
+        match &self.kind {
+            FeatureKind::Gaussian(axes) => axes.iter().map(|axis| axis.centres).product(),
+            FeatureKind::Table(indices) => indices.iter().map(|index| index.values).product(),
+        }
     }
+
+    /// The axes of a grid of Gaussians; none for a table.
+    #[must_use]
+    pub fn axes(&self) -> &[Axis] {
+        match &self.kind {
+            FeatureKind::Gaussian(axes) => axes,
+            FeatureKind::Table(_) => &[],
+        }
+    }
+}
+
+/// How the completion functions of a composite subtask see the type of a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blocks {
+    /// One-hot: a block of features for each state type that the subtask is active in
+    /// (Thesis 4.2).
+    PerStateType,
+    /// Not at all, but for what is in the inputs.
+    One,
 }
 
 /// What kind of subtask it is.
@@ -161,6 +204,11 @@ pub enum Kind {
         goal: StateTypes,
         /// Its weight in the structural difference (Thesis 4.5.2).
         weight: u32,
+        /// How its completion functions see state types.
+        blocks: Blocks,
+        /// Children whose completion functions look at less than the subtask does:
+        /// state abstraction (Dietterich 2000, section 5).
+        abstractions: Vec<(SubtaskId, MapId)>,
     },
     /// Executes one of its actions for one time step.
     Primitive {
@@ -178,7 +226,7 @@ pub struct Subtask {
     pub purpose: &'static str,
     /// State types in which it can be active (Thesis Tables 4.2 and 4.3).
     pub active: StateTypes,
-    /// The inputs that its value functions are approximated over.
+    /// The features that its value functions are linear in.
     pub map: MapId,
     /// Composite or primitive.
     pub kind: Kind,
@@ -197,6 +245,27 @@ impl Subtask {
         match &self.kind {
             Kind::Primitive { actions } => actions.len(),
             Kind::Composite { .. } => 0,
+        }
+    }
+
+    /// Number of blocks in a parameter vector: see [`Blocks`]; 1 for a primitive subtask.
+    #[must_use]
+    pub fn blocks(&self) -> usize {
+        match self.kind {
+            Kind::Composite {
+                blocks: Blocks::PerStateType,
+                ..
+            } => self.active.len(),
+            _ => 1,
+        }
+    }
+
+    /// Which block a state type has.
+    #[must_use]
+    pub fn block(&self, state_type: StateType) -> usize {
+        match self.blocks() {
+            1 => 0,
+            _ => self.active.rank(state_type),
         }
     }
 
@@ -267,17 +336,31 @@ impl Catalogue {
         StateType(self.state_types.len() as u8)
     }
 
+    /// The map of the completion functions of `parent` for `child`, both C~ and C: the
+    /// parent's, unless the world says that less is enough.
+    #[must_use]
+    pub fn completion_map(&self, parent: SubtaskId, child: SubtaskId) -> MapId {
+        let parent = self.subtask(parent);
+        let Kind::Composite { abstractions, .. } = &parent.kind else {
+            return parent.map;
+        };
+        let own = abstractions.iter().find(|(other, _)| *other == child);
+        own.map_or(parent.map, |&(_, map)| map)
+    }
+
+    /// Number of parameters of each completion function of `parent` for `child`.
+    #[must_use]
+    pub fn completion_width(&self, parent: SubtaskId, child: SubtaskId) -> usize {
+        let map = self.completion_map(parent, child);
+        self.subtask(parent).blocks() * self.maps[map.index()].width()
+    }
+
     /// Number of features of a subtask's value functions (Thesis Table 4.6): those
-    /// of its map, for a composite once per state type it is active in.
+    /// of its map, once per block of a composite.
     #[must_use]
     pub fn width(&self, id: SubtaskId) -> usize {
         let subtask = self.subtask(id);
-        let blocks = if subtask.is_composite() {
-            subtask.active.len()
-        } else {
-            1
-        };
-        blocks * self.maps[subtask.map.index()].width()
+        subtask.blocks() * self.maps[subtask.map.index()].width()
     }
 }
 

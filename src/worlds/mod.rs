@@ -1,20 +1,25 @@
 //! Where agents act.
 //!
 //! A [`World`] tells what its subtasks are ([`Catalogue`]) and simulates one time
-//! step at a time. It knows nothing of learning: it hands out *inputs* scaled to
-//! [0, 1], and says which of them each subtask looks at ([`FeatureMap`]). Learning
-//! and evolution are generic over the world and compiled for each one, so the
-//! interface costs nothing at run time.
+//! step at a time. It knows nothing of learning: it hands out *inputs*, and says which of
+//! them each subtask looks at, and how ([`FeatureMap`]). Learning and evolution are
+//! generic over the world and compiled for each one, so the interface costs nothing at
+//! run time.
 
 mod catalogue;
+pub mod cliff;
+pub mod finite;
 pub mod foraging;
+mod grid;
 pub mod scene;
+pub mod taxi;
 
 pub use catalogue::{
-    Axis, Catalogue, FeatureMap, Kind, MapId, StateType, StateTypeInfo, StateTypes, Subtask,
-    SubtaskId,
+    Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,
+    StateTypes, Subtask, SubtaskId,
 };
 
+use self::finite::FiniteModel;
 use crate::random::Stream;
 use crate::scenario::TrainingModel;
 
@@ -38,8 +43,8 @@ pub trait World: Send + Sync {
     type Start: Clone + Send + Sync;
     /// The changing state of one agent and its surroundings.
     type State: Clone + Send;
-    /// What the agent perceives: input values scaled to [0, 1], addressed by
-    /// [`Axis::input`].
+    /// What the agent perceives: input values, addressed by [`Axis::input`] where they
+    /// are scaled to [0, 1], by [`Index::input`] where they are whole numbers.
     type Percept: Copy + AsRef<[f32]> + Send + Sync;
 
     /// The subtasks that hierarchies are made of.
@@ -72,14 +77,24 @@ pub trait World: Send + Sync {
     fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<Self::Percept>;
 
     /// Typical inputs of a primitive subtask.
-    fn probes(&self, primitive: SubtaskId) -> Vec<Probe<Self::Percept>>;
+    fn probes(&self, primitive: SubtaskId) -> Vec<Probe<Self::Percept>> {
+        let _ = primitive;
+        Vec::new()
+    }
 
-    /// How a primitive subtask is trained before evolution starts.
-    fn training(&self, primitive: SubtaskId) -> &TrainingModel;
+    /// How a primitive subtask is trained before evolution starts; `None` where it is
+    /// not, and learns with each individual.
+    fn training(&self, primitive: SubtaskId) -> Option<&TrainingModel> {
+        let _ = primitive;
+        None
+    }
 
     /// The first state of a training episode; `None` where the world has no state
     /// that the subtask could be trained from.
-    fn begin_training(&self, primitive: SubtaskId, rng: &mut Stream) -> Option<Self::State>;
+    fn begin_training(&self, primitive: SubtaskId, rng: &mut Stream) -> Option<Self::State> {
+        let _ = (primitive, rng);
+        None
+    }
 
     /// Whether a training episode goes on after the step that led from `before` to
     /// `after`; `after` may be prepared for it.
@@ -88,5 +103,13 @@ pub trait World: Send + Sync {
         primitive: SubtaskId,
         before: &Self::State,
         after: &mut Self::State,
-    ) -> bool;
+    ) -> bool {
+        let _ = (primitive, before, after);
+        false
+    }
+
+    /// The whole world, exactly; `None` where it has too many states for that.
+    fn finite(&self) -> Option<FiniteModel<Self::Percept>> {
+        None
+    }
 }

@@ -116,7 +116,12 @@ fn check_offspring(
         if darwinian || on_path.contains(name) {
             expected_reset.push(name.to_owned());
             let subtask = catalogue.find(name).unwrap();
-            let new = CompositeValues::new(subtask, node.children.len(), catalogue, 2.0, 0.123);
+            let children = node
+                .children
+                .iter()
+                .map(|child| catalogue.find(child.name).unwrap());
+            let children: Vec<_> = children.collect();
+            let new = CompositeValues::new(subtask, &children, catalogue, 2.0, 0.123);
             prop_assert_eq!(found[name], &new);
         } else {
             let (parent, from) = match graft.contains(name) {

@@ -62,7 +62,7 @@ impl World for Logged {
     fn probes(&self, primitive: SubtaskId) -> Vec<Probe<[f32; INPUTS]>> {
         self.inner.probes(primitive)
     }
-    fn training(&self, primitive: SubtaskId) -> &TrainingModel {
+    fn training(&self, primitive: SubtaskId) -> Option<&TrainingModel> {
         self.inner.training(primitive)
     }
     fn begin_training(&self, primitive: SubtaskId, rng: &mut Stream) -> Option<ForagingState> {

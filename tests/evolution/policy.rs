@@ -4,9 +4,9 @@ use maxq_lab::learning::{
     Agent, Encoder, Gate, Hierarchy, Observer, PolicySamples, SelectionProbabilities, average,
 };
 use maxq_lab::random::{Purpose, Stream, stream};
-use maxq_lab::scenario::{CompositeChoice, TrainingModel};
+use maxq_lab::scenario::CompositeChoice;
 use maxq_lab::worlds::foraging::INPUTS;
-use maxq_lab::worlds::{Catalogue, Probe, StateType, SubtaskId, World};
+use maxq_lab::worlds::{Catalogue, StateType, SubtaskId, World};
 
 use super::trees::{chance, valid_tree};
 use super::{experiment, individuals, learned, state, step, still_scenario, untrained};
@@ -43,18 +43,6 @@ impl World for Still {
     }
     fn sample(&self, _: StateType, _: &mut Stream) -> Option<Percept> {
         unreachable!("samples come from the real world")
-    }
-    fn probes(&self, _: SubtaskId) -> Vec<Probe<Percept>> {
-        Vec::new()
-    }
-    fn training(&self, _: SubtaskId) -> &TrainingModel {
-        unreachable!("nothing is trained here")
-    }
-    fn begin_training(&self, _: SubtaskId, _: &mut Stream) -> Option<Self::State> {
-        None
-    }
-    fn training_goes_on(&self, _: SubtaskId, _: &Self::State, _: &mut Self::State) -> bool {
-        false
     }
 }
 

@@ -37,14 +37,16 @@ impl Lab {
         let settings: Vec<_> = training.chain(settings).collect();
         let scenario = Scenario::load(scenario).unwrap();
         let scenario = scenario.with_settings(&settings).unwrap();
-        let WorldModel::Foraging(model) = scenario.world.clone();
+        let WorldModel::Foraging(model) = scenario.world.clone() else {
+            panic!("a foraging scenario")
+        };
         let world = ForagingWorld::new(&model).unwrap();
         let experiment = Experiment::new(scenario, world).unwrap();
         let workers = Workers::new(1).unwrap();
         let skills = experiment.train(1, 0, &workers, &Gate::default()).unwrap();
         Self {
             experiment,
-            model,
+            model: *model,
             skills,
         }
     }

@@ -31,7 +31,9 @@ pub const MAXIMUM_DEPTH: usize = 4;
 
 /// The world of environment 1.
 pub fn world() -> ForagingWorld {
-    let WorldModel::Foraging(model) = Scenario::load("environment-1").unwrap().world;
+    let WorldModel::Foraging(model) = Scenario::load("environment-1").unwrap().world else {
+        panic!("a foraging scenario")
+    };
     ForagingWorld::new(&model).unwrap()
 }
 

@@ -41,9 +41,10 @@ impl<'s> Specimen<'s> {
     /// The individual at an index of a state, 0 being the best.
     #[must_use]
     pub fn at(state: &'s State, index: usize) -> Option<Self> {
+        let individual = state.individuals.get(index)?;
         Some(Self {
-            individual: state.individuals.get(index)?,
-            skills: &state.skills,
+            individual,
+            skills: individual.skills.as_ref().unwrap_or(&state.skills),
         })
     }
 

@@ -243,7 +243,9 @@ mod tests {
     use proptest::prelude::*;
 
     fn arena() -> Arena {
-        let WorldModel::Foraging(model) = Scenario::load("environment-3").unwrap().world;
+        let WorldModel::Foraging(model) = Scenario::load("environment-3").unwrap().world else {
+            panic!("a foraging scenario")
+        };
         let reach = Reach {
             touch: 135.0,
             proximity: 464.0,

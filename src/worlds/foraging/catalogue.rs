@@ -2,8 +2,8 @@
 
 use crate::scenario::{FeatureModel, ForagingModel, RbfWidth};
 use crate::worlds::{
-    Axis, Catalogue, FeatureMap, Kind, MapId, StateType, StateTypeInfo, StateTypes, Subtask,
-    SubtaskId,
+    Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Kind, MapId, StateType, StateTypeInfo,
+    StateTypes, Subtask, SubtaskId,
 };
 
 /// Empty-handed, no battery visible.
@@ -73,6 +73,8 @@ fn subtasks(model: &ForagingModel) -> Vec<Subtask> {
             kind: Kind::Composite {
                 goal: StateTypes::of(goal),
                 weight,
+                blocks: Blocks::PerStateType,
+                abstractions: Vec::new(),
             },
         };
     let primitive = |name, purpose, active: &[StateType], map, actions: &[[f64; 2]]| Subtask {
@@ -188,19 +190,19 @@ fn maps(features: &FeatureModel) -> Vec<FeatureMap> {
     vec![
         FeatureMap {
             name: "proximity",
-            axes: proximity.clone().collect(),
+            kind: FeatureKind::Gaussian(proximity.clone().collect()),
         },
         FeatureMap {
             name: "angle x distance x proximity",
-            axes: [angle, distance].into_iter().chain(proximity).collect(),
+            kind: FeatureKind::Gaussian([angle, distance].into_iter().chain(proximity).collect()),
         },
         FeatureMap {
             name: "angle",
-            axes: vec![axis(ANGLE, features.approach_centres)],
+            kind: FeatureKind::Gaussian(vec![axis(ANGLE, features.approach_centres)]),
         },
         FeatureMap {
             name: "angle",
-            axes: vec![axis(ANGLE, features.turn_centres)],
+            kind: FeatureKind::Gaussian(vec![axis(ANGLE, features.turn_centres)]),
         },
     ]
 }
@@ -221,7 +223,9 @@ mod tests {
 
     #[test]
     fn numbers_of_features_are_those_of_table_4_6() {
-        let WorldModel::Foraging(model) = Scenario::load("environment-1").unwrap().world;
+        let WorldModel::Foraging(model) = Scenario::load("environment-1").unwrap().world else {
+            panic!("a foraging scenario")
+        };
         let catalogue = catalogue(&model);
         let width = |name| catalogue.width(catalogue.find(name).unwrap());
         assert_eq!(width("Root"), 128);

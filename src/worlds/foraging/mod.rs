@@ -428,8 +428,8 @@ impl World for ForagingWorld {
         }
     }
 
-    fn training(&self, primitive: SubtaskId) -> &TrainingModel {
-        &self.primitive(primitive).training
+    fn training(&self, primitive: SubtaskId) -> Option<&TrainingModel> {
+        Some(&self.primitive(primitive).training)
     }
 
     fn begin_training(&self, primitive: SubtaskId, rng: &mut Stream) -> Option<ForagingState> {

@@ -126,7 +126,7 @@ impl ForagingWorld {
     /// Whether the values of a subtask depend on the target.
     fn looks_at_target(&self, subtask: SubtaskId) -> bool {
         let map = self.catalogue.subtask(subtask).map;
-        let axes = &self.catalogue.maps[map.index()].axes;
+        let axes = self.catalogue.maps[map.index()].axes();
         axes.iter().any(|axis| axis.input == super::ANGLE)
     }
 

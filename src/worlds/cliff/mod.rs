@@ -1,0 +1,172 @@
+//! The cliff walk (Thesis 2.1.3, Figures 2.2 and 2.3).
+//!
+//! A grid of 12 by 4 cells. The start is in its lower left corner, the goal in its lower
+//! right one, and the cells between them are a cliff.
+//!
+//! - **Actions.** Up, Down, Right, Left move by one cell; at the edge the agent stays.
+//! - **Start.** The start, or any cell but the goal: see
+//!   [`CliffBegin`](crate::scenario::CliffBegin).
+//! - **Rewards.** -1 for every step. A step into the cliff brings -100 and leads to the
+//!   start; the trial goes on.
+//! - **End.** The goal is reached.
+//!
+//! Hierarchies are made of the four actions and of three composite subtasks: Leave takes
+//! the agent from the start to the cells above the cliff, Cross along these to the last
+//! column, Descend down there to the goal. The thesis has no hierarchy for the cliff.
+
+mod catalogue;
+mod exact;
+mod scene;
+
+use rand::RngExt;
+use thiserror::Error;
+
+use self::catalogue::{ABOVE, AT_GOAL, AT_START, DOWN, INPUTS, LAST, LEFT, RIGHT};
+use super::finite::FiniteModel;
+use super::grid::Cells;
+use super::{Catalogue, StateType, SubtaskId, World};
+use crate::random::Stream;
+use crate::scenario::{CliffBegin, CliffModel};
+
+/// Why the world cannot be built: never, for a scenario that obeys its rules.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum CliffError {
+    /// The grid leaves no room for a cliff.
+    #[error("world.cliff: found {columns} by {rows} cells; allowed: at least 3 by 2")]
+    TooSmall {
+        /// Columns found.
+        columns: usize,
+        /// Rows found.
+        rows: usize,
+    },
+}
+
+/// What the agent perceives: the number of its cell, and where this is in [0, 1] from the
+/// lower left.
+pub type Percept = [f32; INPUTS];
+
+/// The cliff world. Its state is the cell that the agent is in, counted row by row from
+/// the upper left.
+#[derive(Clone, Debug)]
+pub struct CliffWorld {
+    catalogue: Catalogue,
+    cells: Cells,
+    model: CliffModel,
+}
+
+impl CliffWorld {
+    /// The world that a scenario describes.
+    ///
+    /// # Errors
+    /// When the grid is too small.
+    pub fn new(model: &CliffModel) -> Result<Self, CliffError> {
+        let cells = Cells {
+            columns: model.width,
+            rows: model.height,
+        };
+        if cells.columns < 3 || cells.rows < 2 {
+            return Err(CliffError::TooSmall {
+                columns: cells.columns,
+                rows: cells.rows,
+            });
+        }
+        Ok(Self {
+            catalogue: catalogue::catalogue(cells, model),
+            cells,
+            model: model.clone(),
+        })
+    }
+
+    fn count(&self) -> usize {
+        self.cells.columns * self.cells.rows
+    }
+
+    fn goal(&self) -> usize {
+        self.count() - 1
+    }
+
+    fn start(&self) -> usize {
+        self.count() - self.cells.columns
+    }
+
+    fn is_cliff(&self, cell: usize) -> bool {
+        cell > self.start() && cell < self.goal()
+    }
+
+    /// The cells in which trials begin.
+    fn beginnings(&self) -> std::ops::RangeInclusive<usize> {
+        match self.model.begin {
+            CliffBegin::Start => self.start()..=self.start(),
+            CliffBegin::Anywhere => 0..=self.start(),
+        }
+    }
+
+    fn act(&self, cell: usize, primitive: SubtaskId) -> (usize, f64) {
+        let columns = self.cells.columns;
+        let column = cell % columns;
+        let to = match primitive {
+            DOWN if cell + columns < self.count() => cell + columns,
+            RIGHT if column + 1 < columns => cell + 1,
+            LEFT if column > 0 => cell - 1,
+            DOWN | RIGHT | LEFT => cell,
+            _ => cell.checked_sub(columns).unwrap_or(cell),
+        };
+        match self.is_cliff(to) {
+            true => (self.start(), self.model.fall_reward),
+            false => (to, self.model.step_reward),
+        }
+    }
+}
+
+impl World for CliffWorld {
+    type Start = usize;
+    type State = usize;
+    type Percept = Percept;
+
+    fn catalogue(&self) -> &Catalogue {
+        &self.catalogue
+    }
+
+    fn draw_start(&self, rng: &mut Stream) -> usize {
+        rng.random_range(self.beginnings())
+    }
+
+    fn begin(&self, start: &usize, _: &mut Stream) -> usize {
+        *start
+    }
+
+    fn step(&self, state: &mut usize, primitive: SubtaskId, _: usize, _: &mut Stream) -> f32 {
+        let (to, reward) = self.act(*state, primitive);
+        *state = to;
+        reward as f32
+    }
+
+    fn state_type(&self, state: &usize) -> StateType {
+        match *state {
+            cell if cell == self.goal() => AT_GOAL,
+            cell if cell >= self.start() => AT_START,
+            cell if (cell + 1).is_multiple_of(self.cells.columns) => LAST,
+            _ => ABOVE,
+        }
+    }
+
+    fn percept(&self, state: &usize) -> Percept {
+        let [x, y] = self.cells.centre(*state);
+        let [width, height] = self.cells.extent();
+        let share = |at: f64, extent: f64| ((at - 0.5) / (extent - 1.0)) as f32;
+        [*state as f32, share(x, width), share(y, height)]
+    }
+
+    fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<Percept> {
+        let all = 0..self.count();
+        let cells: Vec<_> = all
+            .filter(|cell| !self.is_cliff(*cell) && self.state_type(cell) == state_type)
+            .collect();
+        let last = cells.len().checked_sub(1)?;
+        Some(self.percept(&cells[rng.random_range(0..=last)]))
+    }
+
+    fn finite(&self) -> Option<FiniteModel<Percept>> {
+        Some(self.exact())
+    }
+}

@@ -1,0 +1,77 @@
+//! What there is to see of the cliff walk.
+
+use super::{CliffWorld, Percept};
+use crate::random::Stream;
+use crate::worlds::grid::outer_walls;
+use crate::worlds::scene::{Mark, Role, Scenery, Scenic, Snapshot, Sweep};
+use crate::worlds::{Probe, StateType, SubtaskId, World};
+
+/// Radius of the agent in cells.
+const RADIUS: f64 = 0.35;
+
+impl Scenic for CliffWorld {
+    fn scenery(&self) -> Scenery {
+        let mark = |role, label: &str, cell| Mark {
+            role,
+            label: String::from(label),
+            at: self.cells.centre(cell),
+        };
+        let mut places = vec![
+            mark(Role::Landmark, "S", self.start()),
+            mark(Role::Goal, "G", self.goal()),
+        ];
+        let cliff = (0..self.count()).filter(|&cell| self.is_cliff(cell));
+        places.extend(cliff.map(|cell| mark(Role::Hazard, "cliff", cell)));
+        Scenery {
+            extent: self.cells.extent(),
+            unit: "cells",
+            grid: Some([self.cells.columns, self.cells.rows]),
+            walls: outer_walls(self.cells).into(),
+            places,
+            time_step_s: None,
+        }
+    }
+
+    fn snapshot(&self, state: &usize) -> Snapshot {
+        Snapshot {
+            at: self.cells.centre(*state),
+            radius: RADIUS,
+            heading: None,
+            carries: None,
+            marks: Vec::new(),
+            view: None,
+            sees: None,
+            rays: Vec::new(),
+            readings: self.cells.readings(*state),
+            state_type: self.state_type(state),
+        }
+    }
+
+    fn position(&self, state: &usize) -> [f64; 2] {
+        self.cells.centre(*state)
+    }
+
+    fn variants(&self) -> Vec<String> {
+        vec![String::from("on the way")]
+    }
+
+    fn state_at(&self, at: [f64; 2], _: f64, variant: usize, _: &mut Stream) -> Option<usize> {
+        let cell = self.cells.cell_at(at)?;
+        (variant == 0 && !self.is_cliff(cell)).then_some(cell)
+    }
+
+    fn sweeps(&self, _: SubtaskId, _: StateType) -> Vec<Sweep<Percept>> {
+        let probe = |cell| Probe {
+            label: format!("cell {cell}"),
+            readings: (self.cells.readings(cell).into_iter())
+                .filter_map(|reading| Some((reading.name, reading.value?)))
+                .collect(),
+            percept: self.percept(&cell),
+        };
+        vec![Sweep {
+            across: self.cells.across(),
+            down: Some(self.cells.down()),
+            probes: self.cells.upwards().map(probe).collect(),
+        }]
+    }
+}

@@ -1,0 +1,290 @@
+//! The taxi problem (Dietterich 2000, section 3.1; Thesis 2.2.2, Figures 2.6 to 2.8).
+//!
+//! A taxi in a grid city with walls and a few stands. A passenger waits at one stand,
+//! the source, and wants to go to another, the destination, which can be the same.
+//!
+//! - **Actions.** North, South, East, West move the taxi by one cell, or not at all where
+//!   a wall stands in the way. Pickup takes the passenger on, Putdown sets him down.
+//! - **Start.** Any cell, source and destination, all alike.
+//! - **Rewards.** -1 for every action; in addition 20 for putting the passenger down at
+//!   his destination, -10 for a Pickup where he does not wait, and for a Putdown without
+//!   him or elsewhere. The thesis says "in addition", and its values come out so; others
+//!   give -10 in all for an illegal action.
+//! - **End.** The passenger has been put down at his destination.
+//! - **The fickle taxi.** A move slips to its right or left; and when the taxi first moves
+//!   away from where the passenger boarded it, he may want to go to another stand, all
+//!   others alike.
+//!
+//! The six actions are primitive subtasks with one action each, which can act in any
+//! state (Thesis Definition 2.1). `Navigate(t)` occurs twice, once for each way in which
+//! its parameter is bound, as in the acyclic graph of Thesis Figure 3.1:
+//! `NavigateToPassenger` is Navigate(source), `NavigateToDestination` is
+//! Navigate(destination). Its parameter follows the destination when that changes.
+
+mod catalogue;
+mod city;
+mod exact;
+mod scene;
+
+use rand::RngExt;
+use thiserror::Error;
+
+use self::catalogue::{
+    AT_DESTINATION, AT_PASSENGER, DELIVERED, EAST, INPUTS, PICKUP, PUTDOWN, RIDING, SOUTH, WAITING,
+    WEST,
+};
+pub use self::city::CityError;
+use self::city::{City, Direction};
+use super::finite::FiniteModel;
+use super::{Catalogue, StateType, SubtaskId, World};
+use crate::random::Stream;
+use crate::scenario::TaxiModel;
+
+/// States drawn before none counts as to be had.
+const MAX_DRAWS: usize = 10_000;
+
+/// Why the world cannot be built.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum TaxiError {
+    /// The map is not that of a city.
+    #[error(transparent)]
+    City(#[from] CityError),
+}
+
+/// Where the passenger is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passenger {
+    /// At a stand, by its place in the map's order.
+    Waiting(u8),
+    /// In the taxi, which is still where he boarded it, and he may change his mind.
+    Boarded,
+    /// In the taxi, for good.
+    Riding,
+    /// Where he wanted to go.
+    Delivered,
+}
+
+/// Taxi, passenger and destination; also where a trial starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TaxiState {
+    /// Cell of the taxi, counted row by row from the north-west.
+    pub taxi: u16,
+    /// Where the passenger is.
+    pub passenger: Passenger,
+    /// The stand where he wants to go.
+    pub destination: u8,
+}
+
+/// What the agent perceives: whole numbers, addressed by the catalogue's tables.
+pub type Percept = [f32; INPUTS];
+
+/// The taxi world.
+#[derive(Clone, Debug)]
+pub struct TaxiWorld {
+    catalogue: Catalogue,
+    city: City,
+    model: TaxiModel,
+}
+
+/// What chance decides in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Chance {
+    slip: Slip,
+    /// Where the passenger wants to go if he changes his mind: the number of the stand
+    /// among the others.
+    whim: Option<u8>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Slip {
+    Straight,
+    Right,
+    Left,
+}
+
+impl Chance {
+    const NONE: Self = Self {
+        slip: Slip::Straight,
+        whim: None,
+    };
+}
+
+impl TaxiWorld {
+    /// The world that a scenario describes.
+    ///
+    /// # Errors
+    /// When the map is not that of a city.
+    pub fn new(model: &TaxiModel) -> Result<Self, TaxiError> {
+        let city = City::read(&model.map)?;
+        Ok(Self {
+            catalogue: catalogue::catalogue(&city, model),
+            city,
+            model: model.clone(),
+        })
+    }
+
+    /// The cell of a stand.
+    fn stand(&self, stand: u8) -> usize {
+        self.city.stands[usize::from(stand)].1
+    }
+
+    /// The stand to go to: the passenger's, then the destination.
+    fn target(&self, state: &TaxiState) -> u8 {
+        match state.passenger {
+            Passenger::Waiting(stand) => stand,
+            _ => state.destination,
+        }
+    }
+
+    fn is_at_target(&self, state: &TaxiState) -> bool {
+        usize::from(state.taxi) == self.stand(self.target(state))
+    }
+
+    /// Executes an action, given what chance decides.
+    fn act(&self, state: &mut TaxiState, primitive: SubtaskId, chance: Chance) -> f64 {
+        let legal = match (primitive, state.passenger) {
+            (PICKUP, Passenger::Waiting(_)) => {
+                let there = self.is_at_target(state);
+                if there {
+                    state.passenger = match self.model.change_of_mind > 0.0 {
+                        true => Passenger::Boarded,
+                        false => Passenger::Riding,
+                    };
+                }
+                there
+            }
+            (PUTDOWN, Passenger::Boarded | Passenger::Riding) if self.is_at_target(state) => {
+                state.passenger = Passenger::Delivered;
+                return self.model.step_reward + self.model.delivery_reward;
+            }
+            (PICKUP | PUTDOWN, _) => false,
+            _ => {
+                self.drive(state, direction(primitive), chance);
+                true
+            }
+        };
+        let penalty = if legal {
+            0.0
+        } else {
+            self.model.illegal_reward
+        };
+        self.model.step_reward + penalty
+    }
+
+    fn drive(&self, state: &mut TaxiState, meant: Direction, chance: Chance) {
+        let direction = match chance.slip {
+            Slip::Straight => meant,
+            Slip::Right => meant.right(),
+            Slip::Left => meant.left(),
+        };
+        let to = self.city.to(usize::from(state.taxi), direction) as u16;
+        let left = std::mem::replace(&mut state.taxi, to) != to;
+        if left && state.passenger == Passenger::Boarded {
+            state.passenger = Passenger::Riding;
+            if let Some(whim) = chance.whim {
+                state.destination = whim + u8::from(whim >= state.destination);
+            }
+        }
+    }
+
+    /// Draws what chance decides; nothing is drawn where nothing is to be decided.
+    fn chance(&self, state: &TaxiState, primitive: SubtaskId, rng: &mut Stream) -> Chance {
+        let mut chance = Chance::NONE;
+        if matches!(primitive, PICKUP | PUTDOWN) {
+            return chance;
+        }
+        if self.model.slip > 0.0 {
+            let draw: f64 = rng.random();
+            if draw < self.model.slip {
+                let right = draw < self.model.slip / 2.0;
+                chance.slip = if right { Slip::Right } else { Slip::Left };
+            }
+        }
+        if state.passenger == Passenger::Boarded && rng.random_bool(self.model.change_of_mind) {
+            let others = self.city.stands.len() as u8 - 1;
+            chance.whim = Some(rng.random_range(0..others));
+        }
+        chance
+    }
+}
+
+/// Where a move is meant to go.
+fn direction(primitive: SubtaskId) -> Direction {
+    match primitive {
+        SOUTH => Direction::South,
+        EAST => Direction::East,
+        WEST => Direction::West,
+        _ => Direction::North,
+    }
+}
+
+impl World for TaxiWorld {
+    type Start = TaxiState;
+    type State = TaxiState;
+    type Percept = Percept;
+
+    fn catalogue(&self) -> &Catalogue {
+        &self.catalogue
+    }
+
+    fn draw_start(&self, rng: &mut Stream) -> TaxiState {
+        let stands = self.city.stands.len() as u8;
+        TaxiState {
+            taxi: rng.random_range(0..self.city.cells() as u16),
+            passenger: Passenger::Waiting(rng.random_range(0..stands)),
+            destination: rng.random_range(0..stands),
+        }
+    }
+
+    fn begin(&self, start: &TaxiState, _: &mut Stream) -> TaxiState {
+        *start
+    }
+
+    fn step(&self, state: &mut TaxiState, primitive: SubtaskId, _: usize, rng: &mut Stream) -> f32 {
+        let chance = self.chance(state, primitive, rng);
+        self.act(state, primitive, chance) as f32
+    }
+
+    fn state_type(&self, state: &TaxiState) -> StateType {
+        let there = self.is_at_target(state);
+        match state.passenger {
+            Passenger::Waiting(_) if there => AT_PASSENGER,
+            Passenger::Waiting(_) => WAITING,
+            Passenger::Boarded | Passenger::Riding if there => AT_DESTINATION,
+            Passenger::Boarded | Passenger::Riding => RIDING,
+            Passenger::Delivered => DELIVERED,
+        }
+    }
+
+    fn percept(&self, state: &TaxiState) -> Percept {
+        let stands = self.city.stands.len() as u8;
+        let passenger = match state.passenger {
+            Passenger::Waiting(stand) => stand,
+            Passenger::Riding | Passenger::Delivered => stands,
+            Passenger::Boarded => stands + 1,
+        };
+        let state_type = self.state_type(state);
+        [
+            f32::from(state.taxi),
+            f32::from(passenger),
+            f32::from(state.destination),
+            f32::from(self.target(state)),
+            f32::from(u8::from(state_type == AT_PASSENGER)),
+            f32::from(u8::from(state_type == AT_DESTINATION)),
+        ]
+    }
+
+    fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<Percept> {
+        (0..MAX_DRAWS).find_map(|_| {
+            let mut state = self.draw_start(rng);
+            if rng.random() {
+                state.passenger = Passenger::Riding;
+            }
+            (self.state_type(&state) == state_type).then(|| self.percept(&state))
+        })
+    }
+
+    fn finite(&self) -> Option<FiniteModel<Percept>> {
+        Some(self.exact())
+    }
+}
