@@ -256,7 +256,9 @@ mod tests {
     use crate::worlds::foraging::{AVOID, CARRYING, SEARCHING};
 
     fn world() -> ForagingWorld {
-        let WorldModel::Foraging(model) = Scenario::load("environment-3").unwrap().world;
+        let WorldModel::Foraging(model) = Scenario::load("environment-3").unwrap().world else {
+            panic!("a foraging scenario")
+        };
         ForagingWorld::new(&model).unwrap()
     }
 
