@@ -98,3 +98,15 @@ fn folder_of(path: &Path) -> &Path {
         _ => Path::new("."),
     }
 }
+
+/// Makes control characters visible, line breaks excepted: text from files must not steer a
+/// terminal.
+#[must_use]
+pub fn visible(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\n' => vec!['\n'],
+        c if c.is_control() => c.escape_unicode().collect(),
+        c => vec![c],
+    };
+    text.chars().flat_map(shown).collect()
+}

@@ -17,6 +17,7 @@
 //! | --- | --- |
 //! | [`cli`] | one file per command |
 //! | [`report`] | plans, studies, statistics, figures, exports |
+//! | [`dashboard`] | the terminal: what a person sees of a run, and can do with it |
 //! | [`lab`] | one run: evolution thread, events, commands, run folder, checkpoint |
 //! | [`evolution`] | population, selection, crossover, the generation loop (Algorithm 3.1) |
 //! | [`learning`] | RBF features, action selection, primitive subtasks, MAXQ-Q |
@@ -27,6 +28,7 @@
 #![deny(missing_docs)]
 
 pub mod cli;
+pub mod dashboard;
 pub mod evolution;
 pub mod files;
 pub mod hierarchy;

@@ -6,6 +6,8 @@ use std::io::{self, Write};
 use clap::ValueEnum;
 use serde::Serialize;
 
+use crate::files::visible;
+
 /// Why a command did not do what it should.
 #[derive(Debug)]
 pub(super) enum Failure {
@@ -59,16 +61,6 @@ pub(super) fn raw(bytes: &[u8]) -> Result<(), Failure> {
         io::ErrorKind::BrokenPipe => Failure::BrokenPipe,
         _ => Failure::Message(format!("standard output: {error}")),
     })
-}
-
-/// Makes control characters visible: text from files must not steer a terminal.
-fn visible(text: &str) -> String {
-    let shown = |c: char| match c {
-        '\n' => vec!['\n'],
-        c if c.is_control() => c.escape_unicode().collect(),
-        c => vec![c],
-    };
-    text.chars().flat_map(shown).collect()
 }
 
 /// JSON escapes the first 32 control characters; this escapes the others.

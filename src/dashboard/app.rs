@@ -1,0 +1,422 @@
+//! The dashboard's state and its two functions.
+
+use std::time::Duration;
+
+use ratatui::Frame;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use super::desk::{Chosen, Desk, Mode};
+use super::export;
+use super::header;
+use super::input::{Effect, Input};
+use super::keys::{Action, Key, KeyMap, Scope};
+use super::look::{Look, Paint, put};
+use super::overlay::{self, Overlay};
+use super::panel::panel;
+use super::setting::Setting;
+use super::views::{self, View, ViewId, panels};
+use crate::lab::Event;
+
+/// Smallest size, in columns and rows, at which there is something to see.
+pub const SMALLEST: (u16, u16) = (40, 12);
+
+/// How long a message stays.
+const MESSAGE_TIME: Duration = Duration::from_secs(8);
+
+/// The dashboard.
+pub struct App {
+    desk: Desk,
+    views: Vec<(ViewId, Box<dyn View>)>,
+    view: ViewId,
+    overlay: Option<Overlay>,
+    dirty: bool,
+}
+
+impl App {
+    /// A dashboard over a run that has not told anything yet.
+    #[must_use]
+    pub fn new(setting: Setting, mode: Mode, look: Look, keys: KeyMap) -> Self {
+        Self {
+            desk: Desk::new(setting, mode, look, keys),
+            views: views::all(),
+            view: ViewId::Overview,
+            overlay: None,
+            dirty: true,
+        }
+    }
+
+    /// What the person has chosen to look at.
+    #[must_use]
+    pub fn desk(&self) -> &Desk {
+        &self.desk
+    }
+
+    /// The view on the screen.
+    #[must_use]
+    pub fn view(&self) -> ViewId {
+        self.view
+    }
+
+    /// Opens a view.
+    pub fn open(&mut self, view: ViewId) {
+        self.view = view;
+        self.dirty = true;
+        self.prepare();
+    }
+
+    /// Travels to the generation with this number, or the nearest that there is.
+    pub fn travel_to(&mut self, generation: u64) {
+        self.desk.travel_to(generation);
+        self.dirty = true;
+        self.prepare();
+    }
+
+    /// Whether the frame drawn last is not what there is to see now. Asking takes the
+    /// answer: who is told to draw must do it.
+    pub fn take_dirty(&mut self) -> bool {
+        std::mem::take(&mut self.dirty)
+    }
+
+    /// Takes in what happened; returns what is to be done about it.
+    pub fn update(&mut self, input: Input) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        match input {
+            Input::Key(key) => {
+                self.dirty = true;
+                effects = self.key(key);
+            }
+            Input::Resize(columns, rows) => {
+                self.dirty = true;
+                self.desk.size = (columns, rows);
+            }
+            Input::Event(event) => self.event(*event),
+            Input::Closed => {
+                self.dirty = true;
+                self.desk.closed = true;
+            }
+            Input::Tick(elapsed) => self.tick(elapsed),
+            Input::Message(text) => {
+                self.dirty = true;
+                self.desk.say(text);
+            }
+        }
+        self.prepare();
+        effects
+    }
+
+    fn event(&mut self, event: Event) {
+        let desk = &mut self.desk;
+        match &event {
+            Event::Progress { control_steps, .. } => desk.pace.steps(*control_steps),
+            Event::Generation(record) => desk.pace.generation(record.generation),
+            Event::Paused => desk.stepping = false,
+            _ => {}
+        }
+        desk.live_mut().fold(event);
+        self.dirty = true;
+    }
+
+    fn tick(&mut self, elapsed: Duration) {
+        self.dirty |= self.desk.tick(elapsed);
+        let old = |since: Duration| self.desk.clock.saturating_sub(since) > MESSAGE_TIME;
+        if self
+            .desk
+            .message
+            .as_ref()
+            .is_some_and(|(_, since)| old(*since))
+        {
+            self.desk.message = None;
+            self.dirty = true;
+        }
+    }
+
+    /// Lets the views on the screen compute what they draw.
+    fn prepare(&mut self) {
+        let on_screen = self.on_screen();
+        for (id, view) in &mut self.views {
+            if on_screen.contains(id) {
+                view.prepare(&self.desk);
+            }
+        }
+    }
+
+    fn on_screen(&self) -> Vec<ViewId> {
+        match self.view {
+            ViewId::Overview => {
+                let placed = panels(self.body());
+                placed.into_iter().map(|(id, _)| id).collect()
+            }
+            view => vec![view],
+        }
+    }
+
+    /// Between header and hint bar.
+    fn body(&self) -> Rect {
+        let (width, height) = self.desk.size;
+        body(Rect::new(0, 0, width, height))
+    }
+
+    /// The view that keys act on: the one on the screen, in the overview the panel that
+    /// has the focus.
+    fn active(&self) -> ViewId {
+        match self.view {
+            ViewId::Overview => self.desk.focus,
+            view => view,
+        }
+    }
+
+    fn key(&mut self, key: Key) -> Vec<Effect> {
+        if let Some(open) = self.overlay.take() {
+            return self.key_in_overlay(open, key);
+        }
+        let keys = &self.desk.keys;
+        let in_view = keys.in_view(key, self.active());
+        let Some(action) = in_view.or_else(|| keys.in_view(key, self.view)) else {
+            return Vec::new();
+        };
+        let active = self.active();
+        for id in [active, self.view] {
+            let Some((_, view)) = self.views.iter_mut().find(|(known, _)| *known == id) else {
+                continue;
+            };
+            if let Some(effects) = view.act(&mut self.desk, action) {
+                return effects;
+            }
+        }
+        self.act(action)
+    }
+
+    fn key_in_overlay(&mut self, open: Overlay, key: Key) -> Vec<Effect> {
+        let keys = &self.desk.keys;
+        match open {
+            Overlay::Help { scroll } => {
+                let page = i32::from(self.desk.size.1 / 2);
+                let by = match keys.in_view(key, self.view) {
+                    Some(Action::Up) => -1,
+                    Some(Action::Down) => 1,
+                    Some(Action::PageUp) => -page,
+                    Some(Action::PageDown) => page,
+                    Some(Action::Top) => i32::MIN,
+                    _ => return Vec::new(),
+                };
+                let scroll = scroll.saturating_add_signed(i16::try_from(by).unwrap_or(i16::MIN));
+                let most = overlay::help_lines(&self.desk, self.view, "").len();
+                let scroll = scroll.min(u16::try_from(most).unwrap_or(u16::MAX));
+                self.overlay = Some(Overlay::Help { scroll });
+                Vec::new()
+            }
+            Overlay::Export => match keys.in_scope(key, Scope::ExportMenu) {
+                Some(action) => self.export(action),
+                None => Vec::new(),
+            },
+            Overlay::Question(question) => match keys.in_scope(key, Scope::Question) {
+                Some(Action::Yes) => question.yes(&mut self.desk),
+                Some(Action::Detach) if question == overlay::Question::Quit => vec![Effect::Detach],
+                _ => Vec::new(),
+            },
+        }
+    }
+
+    /// What no view does itself.
+    fn act(&mut self, action: Action) -> Vec<Effect> {
+        if let Some(view) = action.view() {
+            self.view = view;
+            return Vec::new();
+        }
+        if let Some(effects) = self.steer(action) {
+            return effects;
+        }
+        let desk = &mut self.desk;
+        match action {
+            Action::Help => self.overlay = Some(Overlay::Help { scroll: 0 }),
+            Action::Export => self.overlay = Some(Overlay::Export),
+            Action::Suspend => return vec![Effect::Suspend],
+            Action::Redraw => return vec![Effect::Redraw],
+            Action::Back => self.view = ViewId::Overview,
+            Action::Open if self.view == ViewId::Overview => self.view = desk.focus,
+            Action::NextPanel => self.desk.focus = self.neighbour(1),
+            Action::PreviousPanel => self.desk.focus = self.neighbour(-1),
+            Action::Freeze => desk.toggle_freeze(),
+            Action::Best => desk.chosen = Chosen::Best,
+            Action::Earlier => desk.travel_by(-1),
+            Action::Later => desk.travel_by(1),
+            Action::MuchEarlier => desk.travel_by(-10),
+            Action::MuchLater => desk.travel_by(10),
+            Action::First => desk.travel_to(0),
+            Action::Follow => desk.travel_to(u64::MAX),
+            Action::Play => desk.toggle_play(),
+            Action::Theme => {
+                desk.look.next_theme();
+                let theme = desk.look.theme().to_owned();
+                desk.say(format!("theme: {theme}"));
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    /// Actions that steer evolution.
+    fn steer(&mut self, action: Action) -> Option<Vec<Effect>> {
+        use super::desk::Activity::{Finished, Paused, Stopped, Stopping};
+        let desk = &mut self.desk;
+        let activity = desk.activity();
+        let wanted = match action {
+            Action::Quit => {
+                let runs = desk.mode == Mode::Live && !matches!(activity, Finished | Stopped);
+                if runs {
+                    self.overlay = Some(Overlay::Question(overlay::Question::Quit));
+                    return Some(Vec::new());
+                }
+                return Some(vec![Effect::Quit]);
+            }
+            Action::Pause if activity == Paused => Effect::Resume,
+            Action::Pause => Effect::Pause,
+            Action::StepGeneration => Effect::Step,
+            Action::Checkpoint => Effect::Checkpoint,
+            Action::Stop => Effect::Stop,
+            _ => return None,
+        };
+        let why_not = match (desk.mode, activity) {
+            (Mode::Replay, _) => Some("a replay: there is no evolution to steer"),
+            (Mode::Watch, _) => Some("another process's run: it can be watched, not steered"),
+            (_, Finished) => Some("evolution is over"),
+            (_, Stopped | Stopping) => Some("evolution was stopped"),
+            _ => None,
+        };
+        if let Some(why_not) = why_not {
+            desk.say(why_not);
+            return Some(Vec::new());
+        }
+        match wanted {
+            Effect::Stop => {
+                self.overlay = Some(Overlay::Question(overlay::Question::Stop));
+                return Some(Vec::new());
+            }
+            Effect::Step => desk.stepping = true,
+            Effect::Resume | Effect::Pause => desk.stepping = false,
+            _ => {}
+        }
+        Some(vec![wanted])
+    }
+
+    /// The panel after, or before, the one that has the focus.
+    fn neighbour(&self, by: isize) -> ViewId {
+        let placed = panels(self.body());
+        let here = placed.iter().position(|(id, _)| *id == self.desk.focus);
+        let count = placed.len().max(1) as isize;
+        let next = here.map_or(0, |here| (here as isize + by).rem_euclid(count));
+        placed
+            .get(next as usize)
+            .map_or(self.desk.focus, |(id, _)| *id)
+    }
+
+    fn view_of(&self, id: ViewId) -> Option<&dyn View> {
+        let found = self.views.iter().find(|(known, _)| *known == id);
+        found.map(|(_, view)| view.as_ref())
+    }
+
+    fn export(&mut self, action: Action) -> Vec<Effect> {
+        let active = self.active();
+        let view = self.view_of(active);
+        let (extension, contents) = match action {
+            Action::ExportDot => ("dot", view.and_then(|view| view.dot(&self.desk))),
+            Action::ExportCsv => ("csv", view.and_then(|view| view.csv(&self.desk))),
+            Action::ExportText => ("txt", Some(self.rendered(export::FrameFormat::Text))),
+            Action::ExportAnsi => ("ansi", Some(self.rendered(export::FrameFormat::Ansi))),
+            Action::ExportSvg => ("svg", Some(self.rendered(export::FrameFormat::Svg))),
+            _ => return Vec::new(),
+        };
+        let what = match action {
+            Action::ExportDot | Action::ExportCsv => active,
+            _ => self.view,
+        };
+        match contents {
+            Some(contents) => {
+                let generation = self.desk.shown().map_or(0, |record| record.generation);
+                let name = format!("{}-generation{generation}.{extension}", what.name());
+                vec![Effect::Export(super::input::Export { name, contents })]
+            }
+            None => {
+                let title = what.title();
+                self.desk
+                    .say(format!("{title} has no {extension} to export"));
+                Vec::new()
+            }
+        }
+    }
+
+    /// The frame as it would be on a terminal of the present size.
+    fn rendered(&self, format: export::FrameFormat) -> String {
+        let (width, height) = self.desk.size;
+        let mut buffer = Buffer::empty(Rect::new(0, 0, width, height));
+        self.draw_on(&mut buffer);
+        export::render(&buffer, format)
+    }
+
+    /// Draws everything.
+    pub fn draw(&self, frame: &mut Frame<'_>) {
+        self.draw_on(frame.buffer_mut());
+    }
+
+    /// Draws everything on a buffer of any size.
+    pub fn draw_on(&self, buffer: &mut Buffer) {
+        let (desk, area) = (&self.desk, buffer.area);
+        buffer.set_style(area, desk.look.style(Paint::Text));
+        if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
+            return too_small(desk, area, buffer);
+        }
+        header::draw(desk, self.view, area, buffer);
+        match self.view {
+            ViewId::Overview => {
+                for (id, place) in panels(body(area)) {
+                    self.draw_panel(id, place, id == desk.focus, buffer);
+                }
+            }
+            view => self.draw_panel(view, body(area), false, buffer),
+        }
+        let hints = self
+            .view_of(self.active())
+            .map_or(&[][..], |view| view.hints());
+        header::hint_bar(desk, self.view, hints, area, buffer);
+        if let Some(open) = &self.overlay {
+            let lesson = self.view_of(self.view).map_or("", |view| view.lesson());
+            overlay::draw(open, desk, self.view, lesson, area, buffer);
+        }
+    }
+
+    fn draw_panel(&self, id: ViewId, area: Rect, focused: bool, buffer: &mut Buffer) {
+        let Some(view) = self.view_of(id) else { return };
+        let caption = view.caption(&self.desk);
+        let inside = panel(
+            &self.desk.look,
+            area,
+            focused,
+            (id.title(), &caption),
+            buffer,
+        );
+        view.draw(&self.desk, inside, buffer);
+    }
+}
+
+/// Between header and hint bar.
+fn body(area: Rect) -> Rect {
+    Rect {
+        y: area.y + area.height.min(1),
+        height: area.height.saturating_sub(2),
+        ..area
+    }
+}
+
+fn too_small(desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    let style = desk.look.style(Paint::Notice);
+    let (columns, rows) = SMALLEST;
+    let lines = [
+        String::from("too small"),
+        format!("{}x{}", area.width, area.height),
+        format!("needs {columns}x{rows}"),
+    ];
+    for (row, line) in lines.iter().enumerate() {
+        put(buffer, area, (0, row as u16), line, style);
+    }
+}

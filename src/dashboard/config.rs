@@ -1,0 +1,307 @@
+//! The person's file: keys and theme.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use thiserror::Error;
+use toml::Spanned;
+
+use super::keys::{Action, Collision, Key, KeyError, KeyMap};
+use super::look::{Paint, StyleError, Theme};
+use crate::files::{ReadError, read_text};
+
+/// Largest file that is read, in bytes.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// Keys and themes, as the person wants them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    /// Which key does what.
+    pub keys: KeyMap,
+    /// The themes, those of the program with the person's changes.
+    pub themes: Vec<Theme>,
+    /// The theme to begin with.
+    pub theme: String,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            keys: KeyMap::default(),
+            themes: Theme::all(),
+            theme: String::from("dark"),
+        }
+    }
+}
+
+/// Why a file of keys and themes cannot be used.
+#[derive(Debug, Error)]
+pub enum ConfigError {
+    /// It cannot be read.
+    #[error("{path}: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// Why.
+        source: ReadError,
+    },
+    /// Something in it is not what it should be.
+    #[error("{path}: {message}")]
+    Syntax {
+        /// The file.
+        path: String,
+        /// What, and where.
+        message: String,
+    },
+    /// A value in it is not allowed.
+    #[error("{path}, line {line}: {problem}")]
+    Value {
+        /// The file.
+        path: String,
+        /// Number of the line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        problem: Problem,
+    },
+}
+
+/// What is wrong with a value.
+#[derive(Debug, Error)]
+pub enum Problem {
+    /// No such action.
+    #[error("keys: found {found:?}; allowed: {}", actions())]
+    Action {
+        /// The name.
+        found: String,
+    },
+    /// No such key.
+    #[error("keys.{action}: {source}")]
+    Key {
+        /// The action.
+        action: String,
+        /// What is wrong.
+        source: KeyError,
+    },
+    /// A key would mean two things.
+    #[error("keys: {0}")]
+    Collision(#[from] Collision),
+    /// No such theme.
+    #[error("theme: found {found:?}; allowed: {allowed}")]
+    Theme {
+        /// The name.
+        found: String,
+        /// Themes that there are.
+        allowed: String,
+    },
+    /// No such paint.
+    #[error("styles: found {found:?}; allowed: {}", paints())]
+    Paint {
+        /// The name.
+        found: String,
+    },
+    /// No such style.
+    #[error("styles.{paint}: {source}")]
+    Style {
+        /// What it is for.
+        paint: String,
+        /// What is wrong.
+        source: StyleError,
+    },
+}
+
+fn actions() -> String {
+    let names: Vec<_> = Action::ALL.iter().map(|action| action.name()).collect();
+    names.join(", ")
+}
+
+fn paints() -> String {
+    let names: Vec<_> = Paint::ALL.iter().map(|paint| paint.name()).collect();
+    names.join(", ")
+}
+
+/// The file as it is written.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct File {
+    theme: Option<Spanned<String>>,
+    keys: BTreeMap<Spanned<String>, Spanned<Keys>>,
+    styles: BTreeMap<Spanned<String>, Spanned<String>>,
+}
+
+/// One key or several.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Keys {
+    One(String),
+    Several(Vec<String>),
+}
+
+impl Config {
+    /// Where the file is if it is not said: `maxq-lab/config.toml` in `XDG_CONFIG_HOME`,
+    /// or in `.config` of the home folder.
+    #[must_use]
+    pub fn default_path() -> Option<PathBuf> {
+        let folder = |name| {
+            std::env::var_os(name)
+                .map(PathBuf::from)
+                .filter(|path| path.is_absolute())
+        };
+        let config = folder("XDG_CONFIG_HOME").or_else(|| Some(folder("HOME")?.join(".config")))?;
+        Some(config.join("maxq-lab").join("config.toml"))
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// When it cannot be read, names what does not exist, or gives a key two meanings.
+    pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        let shown = path.display().to_string();
+        let text = read_text(path, MAX_BYTES).map_err(|source| ConfigError::Read {
+            path: shown.clone(),
+            source,
+        })?;
+        Self::read(&text, &shown)
+    }
+
+    /// Reads a text; `path` names it in errors.
+    ///
+    /// # Errors
+    /// When it names what does not exist or gives a key two meanings.
+    pub fn read(text: &str, path: &str) -> Result<Self, ConfigError> {
+        let file: File = toml::from_str(text).map_err(|error| ConfigError::Syntax {
+            path: path.to_owned(),
+            message: error.to_string().trim_end().to_owned(),
+        })?;
+        file.apply().map_err(|(at, problem)| ConfigError::Value {
+            path: path.to_owned(),
+            line: line_of(text, at),
+            problem,
+        })
+    }
+}
+
+fn line_of(text: &str, at: usize) -> usize {
+    text.bytes().take(at).filter(|&byte| byte == b'\n').count() + 1
+}
+
+/// Where in the file, and what.
+type At = (usize, Problem);
+
+impl File {
+    fn apply(self) -> Result<Config, At> {
+        let mut config = Config::default();
+        let mut places = Vec::new();
+        for (name, keys) in &self.keys {
+            let action = bind(&mut config.keys, name, keys)?;
+            places.push((action, name.span().start));
+        }
+        config.keys.check().map_err(|collision| {
+            let named =
+                |(action, _): &&(Action, usize)| [collision.one, collision.other].contains(action);
+            let at = places.iter().filter(named).map(|(_, at)| *at).max();
+            (at.unwrap_or(0), Problem::Collision(collision))
+        })?;
+        if let Some(theme) = &self.theme {
+            let known = config
+                .themes
+                .iter()
+                .any(|known| known.name == *theme.as_ref());
+            if !known {
+                let names: Vec<_> = config
+                    .themes
+                    .iter()
+                    .map(|theme| theme.name.clone())
+                    .collect();
+                let (found, allowed) = (theme.as_ref().clone(), names.join(", "));
+                return Err((theme.span().start, Problem::Theme { found, allowed }));
+            }
+            config.theme.clone_from(theme.as_ref());
+        }
+        for (name, style) in &self.styles {
+            paint(&mut config, name, style)?;
+        }
+        Ok(config)
+    }
+}
+
+fn bind(map: &mut KeyMap, name: &Spanned<String>, keys: &Spanned<Keys>) -> Result<Action, At> {
+    let action = Action::find(name.as_ref()).ok_or_else(|| {
+        let found = name.as_ref().clone();
+        (name.span().start, Problem::Action { found })
+    })?;
+    let names = match keys.as_ref() {
+        Keys::One(key) => std::slice::from_ref(key),
+        Keys::Several(keys) => keys,
+    };
+    let keys: Result<Vec<Key>, KeyError> = names.iter().map(|key| key.parse()).collect();
+    let keys = keys.map_err(|source| {
+        let action = name.as_ref().clone();
+        (name.span().start, Problem::Key { action, source })
+    })?;
+    map.bind(action, keys);
+    Ok(action)
+}
+
+/// Changes a style of the theme that is in use.
+fn paint(config: &mut Config, name: &Spanned<String>, style: &Spanned<String>) -> Result<(), At> {
+    let paint = Paint::find(name.as_ref()).ok_or_else(|| {
+        let found = name.as_ref().clone();
+        (name.span().start, Problem::Paint { found })
+    })?;
+    let theme = config
+        .themes
+        .iter_mut()
+        .find(|theme| theme.name == config.theme);
+    let set = theme.map_or(Ok(()), |theme| theme.set(paint, style.as_ref()));
+    set.map_err(|source| {
+        let paint = name.as_ref().clone();
+        (style.span().start, Problem::Style { paint, source })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        Config::read(text, "config.toml").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn keys_and_styles_are_taken_over() {
+        let text = "theme = \"light\"\n[keys]\npause = \"z\"\nquit = [\"q\", \"Q\"]\n[styles]\nwall = \"bold red on 16\"\n";
+        let config = Config::read(text, "config.toml").unwrap();
+        assert_eq!(config.theme, "light");
+        assert_eq!(config.keys.keys(Action::Pause), ["z".parse().unwrap()]);
+        assert_eq!(config.keys.keys(Action::Quit).len(), 2);
+        let light = &config.themes[1];
+        assert_ne!(light.style(Paint::Wall), Theme::all()[1].style(Paint::Wall));
+    }
+
+    #[test]
+    fn errors_name_the_place() {
+        let lines = [
+            ("\n[keys]\npaws = \"p\"\n", "line 3", "paws"),
+            ("[keys]\npause = \"pp\"\n", "line 2", "pp"),
+            (
+                "[keys]\npause = \"p\"\nhelp = \"q\"\n",
+                "line 3",
+                "\"quit\"",
+            ),
+            ("theme = \"dusk\"\n", "line 1", "high-contrast"),
+            ("[styles]\nwall = \"bald\"\n", "line 2", "bald"),
+            ("[styles]\nwal = \"bold\"\n", "line 2", "\"wal\""),
+            ("[keyz]\n", "line 1", "keyz"),
+            ("[keys]\npause = 3\n", "line 2", "pause"),
+        ];
+        for (text, line, word) in lines {
+            let error = error(text);
+            assert!(error.starts_with("config.toml"), "{error}");
+            assert!(
+                error.contains(line) && error.contains(word),
+                "{text:?}: {error}"
+            );
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! What the person has chosen to look at, over what there is to see.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::keys::KeyMap;
+use super::look::Look;
+use super::model::Model;
+use super::pace::Pace;
+use super::setting::Setting;
+use super::views::ViewId;
+use crate::evolution::{GenerationRecord, RankedRecord};
+use crate::hierarchy::{Tree, parse};
+
+/// Generations a second while time runs through them.
+const PLAYED_PER_SECOND: u32 = 4;
+
+/// How the dashboard stands to its run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// The run is this process's.
+    Live,
+    /// The run is another process's; it is followed and cannot be steered.
+    Watch,
+    /// The run is not going on.
+    Replay,
+}
+
+/// The generation that is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Time {
+    /// The latest.
+    Latest,
+    /// The one with this number.
+    At(u64),
+}
+
+/// The individual that is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chosen {
+    /// The best of the generation shown.
+    Best,
+    /// The one with this id.
+    Id(u64),
+}
+
+/// What evolution is doing, as far as the events tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activity {
+    /// The primitive subtasks are trained.
+    Training,
+    /// Generations live.
+    Running,
+    /// The generation under way lives on, then evolution waits.
+    Stepping,
+    /// It waits.
+    Paused,
+    /// It was told to stop and saves its state.
+    Stopping,
+    /// It was stopped, or died, before it was over.
+    Stopped,
+    /// It is over.
+    Finished,
+}
+
+/// What every view reads: the run, and what the person has chosen to see of it.
+#[derive(Debug)]
+pub struct Desk {
+    /// What does not change.
+    pub setting: Setting,
+    /// How the dashboard stands to its run.
+    pub mode: Mode,
+    /// Themes and signs.
+    pub look: Look,
+    /// Which key does what.
+    pub keys: KeyMap,
+    /// Columns and rows of the terminal.
+    pub size: (u16, u16),
+    /// The individual that is shown.
+    pub chosen: Chosen,
+    /// The panel of the overview that keys act on.
+    pub focus: ViewId,
+    /// Time that has gone by, the sum of all ticks.
+    pub clock: Duration,
+    /// How fast the run goes.
+    pub pace: Pace,
+    /// Whether time runs through the generations.
+    pub playing: bool,
+    /// What was said last, and when.
+    pub message: Option<(String, Duration)>,
+    pub(super) stepping: bool,
+    pub(super) stopping: bool,
+    pub(super) closed: bool,
+    time: Time,
+    live: Model,
+    held: Option<Model>,
+    played: Duration,
+}
+
+impl Desk {
+    /// A desk at the beginning of a run.
+    #[must_use]
+    pub fn new(setting: Setting, mode: Mode, look: Look, keys: KeyMap) -> Self {
+        Self {
+            setting,
+            mode,
+            look,
+            keys,
+            size: (80, 24),
+            chosen: Chosen::Best,
+            focus: ViewId::Arena,
+            clock: Duration::ZERO,
+            pace: Pace::default(),
+            playing: false,
+            message: None,
+            stepping: false,
+            stopping: false,
+            closed: mode == Mode::Replay,
+            time: Time::Latest,
+            live: Model::default(),
+            held: None,
+            played: Duration::ZERO,
+        }
+    }
+
+    /// The run as it is, whatever is shown.
+    #[must_use]
+    pub fn live(&self) -> &Model {
+        &self.live
+    }
+
+    /// The run as it is shown: as it is, or as it was when the view was frozen.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        self.held.as_ref().unwrap_or(&self.live)
+    }
+
+    pub(super) fn live_mut(&mut self) -> &mut Model {
+        &mut self.live
+    }
+
+    /// Whether the view is frozen.
+    #[must_use]
+    pub fn frozen(&self) -> bool {
+        self.held.is_some()
+    }
+
+    /// Freezes the view or lets it go.
+    pub fn toggle_freeze(&mut self) {
+        self.held = match self.held {
+            Some(_) => None,
+            None => Some(self.live.clone()),
+        };
+    }
+
+    /// What evolution is doing.
+    #[must_use]
+    pub fn activity(&self) -> Activity {
+        let live = &self.live;
+        match live.progress() {
+            _ if live.ending().is_some() => Activity::Finished,
+            _ if self.closed => Activity::Stopped,
+            _ if self.stopping => Activity::Stopping,
+            _ if live.paused() => Activity::Paused,
+            Some(progress) if progress.generation == 0 => Activity::Training,
+            None if live.latest().is_none() => Activity::Training,
+            _ if self.stepping => Activity::Stepping,
+            _ => Activity::Running,
+        }
+    }
+
+    /// The generation that the person travelled to.
+    #[must_use]
+    pub fn time(&self) -> Time {
+        self.time
+    }
+
+    /// The generation that is shown; `None` before the first has lived.
+    #[must_use]
+    pub fn shown(&self) -> Option<&Arc<GenerationRecord>> {
+        let model = self.model();
+        match self.time {
+            Time::Latest => model.latest(),
+            Time::At(number) => model.generation(number).or_else(|| model.latest()),
+        }
+    }
+
+    /// Whether what is shown is not the latest generation there is.
+    #[must_use]
+    pub fn is_in_the_past(&self) -> bool {
+        let number = |record: Option<&Arc<GenerationRecord>>| record.map(|r| r.generation);
+        number(self.shown()) != number(self.live.latest())
+    }
+
+    /// Travels to the generation with this number, or the nearest that there is; the
+    /// last one is followed as evolution goes on.
+    pub fn travel_to(&mut self, number: u64) {
+        let generations = self.model().generations();
+        let (Some(first), Some(last)) = (generations.first(), generations.last()) else {
+            return;
+        };
+        let (first, last) = (first.generation, last.generation);
+        self.time = match number {
+            number if number >= last => Time::Latest,
+            number => Time::At(number.max(first)),
+        };
+    }
+
+    /// Travels some generations on, or back.
+    pub fn travel_by(&mut self, generations: i64) {
+        if let Some(shown) = self.shown() {
+            self.travel_to(shown.generation.saturating_add_signed(generations));
+        }
+    }
+
+    /// Starts or ends running through the generations; from the latest it begins anew.
+    pub fn toggle_play(&mut self) {
+        self.playing = !self.playing;
+        self.played = Duration::ZERO;
+        if self.playing && self.time == Time::Latest {
+            self.travel_to(0);
+        }
+    }
+
+    /// Lets time go by. Whether anything but the clock has changed.
+    pub(super) fn tick(&mut self, elapsed: Duration) -> bool {
+        self.clock += elapsed;
+        if matches!(self.activity(), Activity::Running | Activity::Stepping) {
+            self.pace.tick(elapsed);
+        }
+        if !self.playing {
+            return false;
+        }
+        self.played += elapsed;
+        let period = Duration::from_secs(1) / PLAYED_PER_SECOND;
+        let before = self.time;
+        while self.played >= period && self.playing {
+            self.played -= period;
+            self.travel_by(1);
+            self.playing = self.time != Time::Latest;
+        }
+        before != self.time
+    }
+
+    /// The selected individual of the generation shown; the best where the chosen one
+    /// did not live in it.
+    #[must_use]
+    pub fn selected(&self) -> Option<&RankedRecord> {
+        let individuals = &self.shown()?.individuals;
+        let chosen = match self.chosen {
+            Chosen::Best => None,
+            Chosen::Id(id) => individuals.iter().find(|individual| individual.id == id),
+        };
+        chosen.or_else(|| individuals.first())
+    }
+
+    /// The hierarchy of an individual; `None` where its text is none of this world.
+    #[must_use]
+    pub fn tree(&self, individual: &RankedRecord) -> Option<Tree> {
+        parse(&individual.tree, &self.setting.catalogue).ok()
+    }
+
+    /// Says something to the person.
+    pub fn say(&mut self, text: impl Into<String>) {
+        self.message = Some((text.into(), self.clock));
+    }
+}

@@ -1,0 +1,146 @@
+//! The first and the last line of the screen: what is going on, and what keys do.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use super::desk::{Activity, Desk, Mode};
+use super::keys::Action;
+use super::look::{Paint, fitted, one_line, put, width};
+use super::views::ViewId;
+
+/// Actions that every hint bar ends with.
+const COMMON: &[Action] = &[
+    Action::Pause,
+    Action::StepGeneration,
+    Action::Freeze,
+    Action::Earlier,
+    Action::Later,
+    Action::Export,
+    Action::Help,
+    Action::Quit,
+];
+
+/// Draws the first line: the run, what it is doing, and the view.
+///
+/// ```text
+///  ▶ RUNNING  environment-1 seed 1 · generation 12 of at most 200 · Overview      FROZEN at 11
+/// ```
+pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
+    let line = Rect {
+        height: area.height.min(1),
+        ..area
+    };
+    let look = &desk.look;
+    let (sign, word, paint) = activity(desk);
+    let state = format!(" {sign} {word} ");
+    let mut column = put(buffer, line, (0, 0), &state, look.style(paint));
+    let marks = marks(desk);
+    let right = marks.iter().map(|mark| width(mark) + 1).sum::<usize>();
+    let room = usize::from(line.width.saturating_sub(column)).saturating_sub(right);
+    let separator = look.signs.separator;
+    let setting = &desk.setting;
+    let name = one_line(&setting.scenario.name);
+    let time = match desk.shown() {
+        Some(record) => format!("generation {}", record.generation),
+        None => String::from("before the first generation"),
+    };
+    let text = format!(
+        " {} {separator} {time} {separator} {name} seed {}",
+        view.title(),
+        setting.seed
+    );
+    column = put(
+        buffer,
+        line,
+        (column, 0),
+        &fitted(&text, room, look.signs),
+        look.style(Paint::Text),
+    );
+    let mut start = line
+        .width
+        .saturating_sub(u16::try_from(right).unwrap_or(u16::MAX))
+        .max(column);
+    for mark in marks {
+        start = put(buffer, line, (start, 0), &mark, look.style(Paint::Frozen)) + 1;
+    }
+}
+
+/// Sign, word and paint of what evolution is doing.
+pub(super) fn activity(desk: &Desk) -> (&'static str, &'static str, Paint) {
+    let signs = desk.look.signs;
+    match desk.activity() {
+        Activity::Training => (signs.running, "TRAINING", Paint::Good),
+        Activity::Running => (signs.running, "RUNNING", Paint::Good),
+        Activity::Stepping => (signs.stepping, "STEPPING", Paint::Notice),
+        Activity::Paused => (signs.paused, "PAUSED", Paint::Notice),
+        Activity::Stopping => (signs.stopped, "STOPPING", Paint::Bad),
+        Activity::Stopped if desk.mode == Mode::Replay => {
+            (signs.stopped, "UNFINISHED", Paint::Notice)
+        }
+        Activity::Stopped => (signs.stopped, "STOPPED", Paint::Bad),
+        Activity::Finished => (signs.finished, "FINISHED", Paint::Good),
+    }
+}
+
+/// What makes the screen show something else than the present.
+fn marks(desk: &Desk) -> Vec<String> {
+    let mut marks = Vec::new();
+    match desk.mode {
+        Mode::Live => {}
+        Mode::Watch => marks.push(String::from(" WATCHING ")),
+        Mode::Replay => marks.push(String::from(" REPLAY ")),
+    }
+    if desk.frozen() {
+        let latest = desk.model().latest().map_or(0, |record| record.generation);
+        marks.push(format!(
+            " {} VIEW FROZEN at {latest} ",
+            desk.look.signs.frozen
+        ));
+    } else if desk.is_in_the_past() {
+        let latest = desk.live().latest().map_or(0, |record| record.generation);
+        marks.push(format!(" PAST of {latest} "));
+    }
+    marks
+}
+
+/// Draws the last line: a message, or what keys do.
+pub(super) fn hint_bar(
+    desk: &Desk,
+    view: ViewId,
+    hints: &[Action],
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let line = Rect {
+        y: area.bottom().saturating_sub(1),
+        height: area.height.min(1),
+        ..area
+    };
+    let look = &desk.look;
+    if let Some((text, _)) = &desk.message {
+        let text = fitted(&one_line(text), usize::from(line.width), look.signs);
+        put(buffer, line, (0, 0), &text, look.style(Paint::Notice));
+        return;
+    }
+    let mut column = 0;
+    let more = match view {
+        ViewId::Overview => &[Action::NextPanel, Action::Open][..],
+        _ => &[Action::Back][..],
+    };
+    for &action in hints.iter().chain(more).chain(COMMON) {
+        let useless = desk.mode != Mode::Live
+            && matches!(
+                action,
+                Action::Pause | Action::StepGeneration | Action::Freeze
+            );
+        let Some((key, hint)) = desk.keys.hint(action).filter(|_| !useless) else {
+            continue;
+        };
+        let needed = u16::try_from(width(&key) + 1 + width(hint)).unwrap_or(u16::MAX);
+        if column + needed > line.width {
+            return;
+        }
+        column = put(buffer, line, (column, 0), &key, look.style(Paint::Key));
+        column = put(buffer, line, (column + 1, 0), hint, look.style(Paint::Dim)) + 2;
+    }
+}

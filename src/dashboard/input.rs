@@ -1,0 +1,58 @@
+//! What reaches the dashboard, and what it wants done.
+
+use std::time::Duration;
+
+use super::keys::Key;
+use crate::lab::Event;
+
+/// Something that happened.
+#[derive(Clone, Debug)]
+pub enum Input {
+    /// A key was pressed.
+    Key(Key),
+    /// The terminal has so many columns and rows.
+    Resize(u16, u16),
+    /// The run has a fact to tell.
+    Event(Box<Event>),
+    /// The run will tell nothing more: it is over, was stopped, or died.
+    Closed,
+    /// So much time went by since the last tick.
+    Tick(Duration),
+    /// Whoever drives the dashboard has something to say: an export was written, a file
+    /// could not be read.
+    Message(String),
+}
+
+/// Something to be done by whoever drives the dashboard.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Make evolution wait.
+    Pause,
+    /// Let evolution go on.
+    Resume,
+    /// Let evolution go on to the end of a generation.
+    Step,
+    /// Save the latest state now.
+    Checkpoint,
+    /// Save and end the run, and stay.
+    Stop,
+    /// Save and end the run if there is one, and leave.
+    Quit,
+    /// Leave, and let the run go on without a terminal.
+    Detach,
+    /// Put the program into the background of its shell.
+    Suspend,
+    /// Forget what is on the terminal and draw everything again.
+    Redraw,
+    /// Write a file for the person.
+    Export(Export),
+}
+
+/// A file for the person.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Export {
+    /// Its name without a folder.
+    pub name: String,
+    /// What is in it.
+    pub contents: String,
+}

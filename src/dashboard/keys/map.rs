@@ -1,0 +1,134 @@
+//! Which key does what.
+
+use thiserror::Error;
+
+use super::action::{Action, Scope};
+use super::key::{Key, KeyError};
+use crate::dashboard::views::ViewId;
+
+/// Which key does what.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeyMap {
+    bindings: Vec<(Action, Vec<Key>)>,
+}
+
+/// One key that would mean two things.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("key {key} is bound to {:?} and to {:?}, which meet in a view; allowed: one of them", .one.name(), .other.name())]
+pub struct Collision {
+    /// The key.
+    pub key: Key,
+    /// What it would do.
+    pub one: Action,
+    /// What else it would do.
+    pub other: Action,
+}
+
+impl Default for KeyMap {
+    /// The keys of the list of actions.
+    fn default() -> Self {
+        let parse = |action: Action| -> Result<Vec<Key>, KeyError> {
+            action
+                .default_keys()
+                .iter()
+                .map(|key| key.parse())
+                .collect()
+        };
+        let bindings = Action::ALL.iter().map(|&action| {
+            // A test holds that every default is a key.
+            (action, parse(action).unwrap_or_default())
+        });
+        Self {
+            bindings: bindings.collect(),
+        }
+    }
+}
+
+impl KeyMap {
+    /// Binds an action to these keys instead of those that it had.
+    pub fn bind(&mut self, action: Action, keys: Vec<Key>) {
+        for (bound, its_keys) in &mut self.bindings {
+            if *bound == action {
+                *its_keys = keys;
+                return;
+            }
+        }
+    }
+
+    /// Checks that no key means two things at one place.
+    ///
+    /// # Errors
+    /// The first collision.
+    pub fn check(&self) -> Result<(), Collision> {
+        for (index, (one, keys)) in self.bindings.iter().enumerate() {
+            for (other, others) in &self.bindings[..index] {
+                let shared = keys.iter().find(|key| others.contains(key));
+                if let Some(&key) = shared.filter(|_| one.scope().meets(other.scope())) {
+                    let (one, other) = (*other, *one);
+                    return Err(Collision { key, one, other });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What a key does in a view.
+    #[must_use]
+    pub fn in_view(&self, key: Key, view: ViewId) -> Option<Action> {
+        self.find(key, |scope| match scope {
+            Scope::Everywhere => true,
+            Scope::In(views) => views.contains(&view),
+            Scope::ExportMenu | Scope::Question => false,
+        })
+    }
+
+    /// What a key does where only this scope counts.
+    #[must_use]
+    pub fn in_scope(&self, key: Key, wanted: Scope) -> Option<Action> {
+        self.find(key, |scope| scope == wanted)
+    }
+
+    fn find(&self, key: Key, counts: impl Fn(Scope) -> bool) -> Option<Action> {
+        let mut found = self.bindings.iter().filter(|(_, keys)| keys.contains(&key));
+        found
+            .find(|(action, _)| counts(action.scope()))
+            .map(|(action, _)| *action)
+    }
+
+    /// The keys that do something; none if it is unbound.
+    #[must_use]
+    pub fn keys(&self, action: Action) -> &[Key] {
+        let mut bindings = self.bindings.iter();
+        bindings
+            .find(|(bound, _)| *bound == action)
+            .map_or(&[], |(_, keys)| keys)
+    }
+
+    /// The first key of an action and what it does, such as `p pause`; `None` if it is
+    /// unbound.
+    #[must_use]
+    pub fn hint(&self, action: Action) -> Option<(String, &'static str)> {
+        let key = self.keys(action).first()?;
+        Some((key.to_string(), action.hint()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_action_has_a_key_and_no_default_collides() {
+        let map = KeyMap::default();
+        map.check().unwrap();
+        for &action in Action::ALL {
+            let keys = map.keys(action);
+            assert_eq!(keys.len(), action.default_keys().len(), "{action:?}");
+            assert!(
+                !keys.is_empty() && !action.description().is_empty(),
+                "{action:?}"
+            );
+            assert_eq!(Action::find(action.name()), Some(action));
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! How things look: themes, signs, lines of text, the canvas.
+
+mod canvas;
+mod paint;
+mod signs;
+mod text;
+mod theme;
+
+pub use canvas::{Canvas, Layer};
+pub use paint::Paint;
+pub use signs::Signs;
+pub use text::{fitted, one_line, put, width};
+pub use theme::{StyleError, Theme};
+
+use ratatui::style::Style;
+
+/// Themes and signs in use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// The themes that a key goes through; never empty.
+    themes: Vec<Theme>,
+    current: usize,
+    /// The signs.
+    pub signs: &'static Signs,
+}
+
+impl Look {
+    /// The theme of this place in the list, and the list to go through.
+    #[must_use]
+    pub fn new(themes: Vec<Theme>, first: &str, signs: &'static Signs) -> Self {
+        let current = themes.iter().position(|theme| theme.name == first);
+        Self {
+            current: current.unwrap_or(0),
+            themes,
+            signs,
+        }
+    }
+
+    /// The style of a paint.
+    #[must_use]
+    pub fn style(&self, paint: Paint) -> Style {
+        self.themes
+            .get(self.current)
+            .map_or_else(Style::new, |theme| theme.style(paint))
+    }
+
+    /// Name of the theme in use.
+    #[must_use]
+    pub fn theme(&self) -> &str {
+        self.themes
+            .get(self.current)
+            .map_or("", |theme| &theme.name)
+    }
+
+    /// Goes on to the next theme.
+    pub fn next_theme(&mut self) {
+        self.current = (self.current + 1) % self.themes.len().max(1);
+    }
+}

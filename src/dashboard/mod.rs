@@ -1,0 +1,46 @@
+//! The dashboard: what a person sees of a run, and can do with it.
+//!
+//! [`App`] is a state and two functions. [`App::update`] takes an [`Input`] - a key, an
+//! event of the run, time that went by, something that was loaded - and returns
+//! [`Effect`]s for whoever drives it to carry out. [`App::draw`] is a pure function of the state. Neither
+//! reads a clock, a file or the environment, so that a live run, a replay, a run watched
+//! from afar and a snapshot test are the same code, and a frame can be made again.
+//!
+//! # The corners of this room
+//!
+//! | module | what is in it |
+//! | --- | --- |
+//! | `app` | the state and its two functions |
+//! | `model` | the fold over the events of the run |
+//! | `desk` | what the person has chosen to look at; every view reads it |
+//! | `keys` | actions, keys, and which key does what: one list for input, hints and help |
+//! | `look` | themes, signs, lines of text, the canvas that arenas are drawn on |
+//! | `views` | one file a view; a view in a corner of the overview is a panel |
+//! | `export` | a frame as text, ANSI or SVG |
+//!
+//! A view is added by a variant of [`ViewId`], an entry in its table, and a file
+//! that implements `View`.
+
+mod app;
+mod config;
+mod desk;
+mod export;
+mod header;
+mod input;
+pub mod keys;
+pub mod look;
+mod model;
+mod overlay;
+mod pace;
+mod panel;
+mod setting;
+pub mod views;
+
+pub use app::App;
+pub use config::{Config, ConfigError};
+pub use desk::{Chosen, Desk, Mode, Time};
+pub use export::{FrameFormat, render};
+pub use input::{Effect, Export, Input};
+pub use model::{Model, Progress};
+pub use setting::Setting;
+pub use views::ViewId;

@@ -1,0 +1,177 @@
+//! What opens over a view: help, the menu of exports, questions.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::{Clear, Widget};
+
+use super::desk::Desk;
+use super::input::Effect;
+use super::keys::{Action, Scope};
+use super::look::{Paint, fitted, put, width};
+use super::panel::panel;
+use super::views::ViewId;
+
+/// What is open over the view.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Overlay {
+    /// What there is to see, and all keys.
+    Help {
+        /// Lines that are above the screen.
+        scroll: u16,
+    },
+    /// What can be exported.
+    Export,
+    /// Something to be answered.
+    Question(Question),
+}
+
+/// Something to be answered before it is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Question {
+    /// Leave while the run goes on?
+    Quit,
+    /// Stop the run?
+    Stop,
+}
+
+impl Question {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Quit => "Save the run and leave? It can be resumed.",
+            Self::Stop => "Save the run and stop it? It can be resumed.",
+        }
+    }
+
+    fn answers(self) -> &'static [Action] {
+        match self {
+            Self::Quit => &[Action::Yes, Action::Detach, Action::No],
+            Self::Stop => &[Action::Yes, Action::No],
+        }
+    }
+
+    pub(super) fn yes(self, desk: &mut Desk) -> Vec<Effect> {
+        match self {
+            Self::Quit => vec![Effect::Quit],
+            Self::Stop => {
+                desk.stopping = true;
+                vec![Effect::Stop]
+            }
+        }
+    }
+}
+
+/// A line of an overlay: a key or nothing, and a text.
+type Line = (String, String, Paint);
+
+/// Draws what is open.
+pub(super) fn draw(
+    open: &Overlay,
+    desk: &Desk,
+    view: ViewId,
+    lesson: &str,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    match open {
+        Overlay::Help { scroll } => {
+            let lines = help_lines(desk, view, lesson);
+            window(desk, ("Help", view.title()), &lines, *scroll, area, buffer);
+        }
+        Overlay::Export => {
+            let lines = of_scope(desk, Scope::ExportMenu);
+            window(
+                desk,
+                ("Export", "any other key: nothing"),
+                &lines,
+                0,
+                area,
+                buffer,
+            );
+        }
+        Overlay::Question(question) => {
+            let mut lines = vec![plain(question.text())];
+            lines.extend(question.answers().iter().map(|&action| line(desk, action)));
+            window(desk, ("Question", ""), &lines, 0, area, buffer);
+        }
+    }
+}
+
+fn plain(text: &str) -> Line {
+    (String::new(), text.to_owned(), Paint::Text)
+}
+
+fn line(desk: &Desk, action: Action) -> Line {
+    let keys: Vec<_> = desk
+        .keys
+        .keys(action)
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    let description = action.description().trim_end_matches('.');
+    (keys.join(" "), description.to_owned(), Paint::Text)
+}
+
+fn of_scope(desk: &Desk, scope: Scope) -> Vec<Line> {
+    let actions = Action::ALL.iter().filter(|action| action.scope() == scope);
+    actions.map(|&action| line(desk, action)).collect()
+}
+
+/// The lesson of the view and all keys that do something in it.
+pub(super) fn help_lines(desk: &Desk, view: ViewId, lesson: &str) -> Vec<Line> {
+    let mut lines: Vec<_> = lesson.lines().map(plain).collect();
+    lines.push(plain(""));
+    for &action in Action::ALL {
+        let counts = match action.scope() {
+            Scope::Everywhere => true,
+            Scope::In(views) => view == ViewId::Overview || views.contains(&view),
+            Scope::ExportMenu | Scope::Question => false,
+        };
+        if counts {
+            lines.push(line(desk, action));
+        }
+    }
+    lines
+}
+
+/// Draws lines in a window in the middle of the screen.
+fn window(
+    desk: &Desk,
+    titles: (&str, &str),
+    lines: &[Line],
+    scroll: u16,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let look = &desk.look;
+    let keys = lines
+        .iter()
+        .map(|(keys, ..)| width(keys))
+        .max()
+        .unwrap_or(0);
+    let texts = lines
+        .iter()
+        .map(|(_, text, _)| width(text))
+        .max()
+        .unwrap_or(0);
+    let wanted = |columns: usize| u16::try_from(columns).unwrap_or(u16::MAX);
+    let place = area.centered(
+        ratatui::layout::Constraint::Length(wanted(keys + texts + 6).min(area.width)),
+        ratatui::layout::Constraint::Length(wanted(lines.len() + 2).min(area.height)),
+    );
+    Clear.render(place, buffer);
+    buffer.set_style(place, look.style(Paint::Text));
+    let inside = panel(look, place, true, titles, buffer);
+    let last = lines.len().saturating_sub(usize::from(inside.height));
+    let skipped = usize::from(scroll).min(last);
+    for (row, (key, text, paint)) in lines.iter().skip(skipped).enumerate() {
+        let Ok(row) = u16::try_from(row) else { return };
+        put(buffer, inside, (1, row), key, look.style(Paint::Key));
+        let from = match key.is_empty() {
+            true => 1,
+            false => wanted(keys + 3),
+        };
+        let room = usize::from(inside.width.saturating_sub(from));
+        let text = fitted(text, room, look.signs);
+        put(buffer, inside, (from, row), &text, look.style(*paint));
+    }
+}

@@ -1,0 +1,156 @@
+//! The views: one file each.
+//!
+//! A view fills the screen between header and hint bar; most are also a panel of the
+//! overview, where they get a corner. They draw what fits.
+
+mod arena;
+mod fitness;
+mod hierarchy;
+mod overview;
+mod policy;
+mod population;
+mod status;
+
+use std::str::FromStr;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use thiserror::Error;
+
+pub(super) use overview::panels;
+
+use super::desk::Desk;
+use super::input::Effect;
+use super::keys::Action;
+
+/// A view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ViewId {
+    /// Everything at a glance.
+    Overview,
+    /// A rollout of the selected individual.
+    Arena,
+    /// The selected individual's task hierarchy.
+    Hierarchy,
+    /// Fitness and structural difference over generations.
+    Fitness,
+    /// Primitive-selection probabilities.
+    Policy,
+    /// All individuals of a generation.
+    Population,
+    /// What the run is doing.
+    Status,
+}
+
+/// A view's name for the command line, and its title.
+const VIEWS: &[(ViewId, &str, &str)] = &[
+    (ViewId::Overview, "overview", "Overview"),
+    (ViewId::Arena, "arena", "Arena"),
+    (ViewId::Hierarchy, "hierarchy", "Hierarchy"),
+    (ViewId::Fitness, "fitness", "Fitness"),
+    (ViewId::Policy, "policy", "Policy"),
+    (ViewId::Population, "population", "Population"),
+    (ViewId::Status, "status", "Status"),
+];
+
+/// A name that no view has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("found {found:?}; allowed: {}", names())]
+pub struct UnknownView {
+    /// The name.
+    pub found: String,
+}
+
+fn names() -> String {
+    let names: Vec<_> = VIEWS.iter().map(|(_, name, _)| *name).collect();
+    names.join(", ")
+}
+
+impl ViewId {
+    /// All views, in the order of the header.
+    pub fn all() -> impl Iterator<Item = Self> {
+        VIEWS.iter().map(|(id, ..)| *id)
+    }
+
+    fn entry(self) -> (&'static str, &'static str) {
+        let entry = VIEWS.iter().find(|(id, ..)| *id == self);
+        entry.map_or(("", ""), |(_, name, title)| (name, title))
+    }
+
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// Its title.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        self.entry().1
+    }
+}
+
+impl FromStr for ViewId {
+    type Err = UnknownView;
+
+    fn from_str(name: &str) -> Result<Self, UnknownView> {
+        let entry = VIEWS.iter().find(|(_, known, _)| *known == name);
+        entry.map(|(id, ..)| *id).ok_or_else(|| UnknownView {
+            found: name.to_owned(),
+        })
+    }
+}
+
+/// What a view does. Everything that several views share is on the [`Desk`]; a view
+/// keeps what is its own: a column to sort by, a cache of what is dear to compute.
+pub(super) trait View: Send {
+    /// What the panel is about, after its title: whose, when, in which unit.
+    fn caption(&self, _desk: &Desk) -> String {
+        String::new()
+    }
+
+    /// Draws into the area, which may be of any size.
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer);
+
+    /// The actions that the hint bar names, most useful first.
+    fn hints(&self) -> &'static [Action];
+
+    /// Does what a key asks for; `None` where that is not this view's business.
+    fn act(&mut self, _desk: &mut Desk, _action: Action) -> Option<Vec<Effect>> {
+        None
+    }
+
+    /// Computes what drawing needs, after every input while the view is on the screen.
+    fn prepare(&mut self, _desk: &Desk) {}
+
+    /// What is shown as a table, comma-separated values with a line of names.
+    fn csv(&self, _desk: &Desk) -> Option<String> {
+        None
+    }
+
+    /// The hierarchy that is shown, as a Graphviz graph.
+    fn dot(&self, _desk: &Desk) -> Option<String> {
+        None
+    }
+
+    /// What there is to see and how to read it, in the terms of the method: the head of
+    /// the help overlay.
+    fn lesson(&self) -> &'static str;
+}
+
+/// All views in the order of [`ViewId::all`].
+pub(super) fn all() -> Vec<(ViewId, Box<dyn View>)> {
+    ViewId::all().map(|id| (id, make(id))).collect()
+}
+
+fn make(id: ViewId) -> Box<dyn View> {
+    match id {
+        ViewId::Overview => Box::new(overview::Overview),
+        ViewId::Arena => Box::new(arena::Arena),
+        ViewId::Hierarchy => Box::new(hierarchy::Hierarchy),
+        ViewId::Fitness => Box::new(fitness::Fitness),
+        ViewId::Policy => Box::new(policy::Policy),
+        ViewId::Population => Box::new(population::Population::default()),
+        ViewId::Status => Box::new(status::Status),
+    }
+}

@@ -1,0 +1,78 @@
+//! Everything at a glance.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Constraint, Layout, Rect};
+
+use super::{View, ViewId};
+use crate::dashboard::desk::Desk;
+use crate::dashboard::keys::Action;
+
+/// Everything at a glance: the panels, as many as there is room for.
+pub(super) struct Overview;
+
+/// Room below which a panel shows too little to be worth its place.
+const WIDE: u16 = 110;
+
+/// The panels on an area, in the order of the Tab key.
+///
+/// ```text
+///   from 110 columns on:                   below:
+///  ╭ Arena ──╮╭ Hierarchy ─╮╭ Status ─╮    ╭ Arena ──────╮╭ Hierarchy ─╮
+///  │         ││            ││         │    │             ││            │
+///  ╰─────────╯╰────────────╯╰─────────╯    ╰─────────────╯╰────────────╯
+///  ╭ Fitness ╮╭ Policy ────╮╭ Popul. ─╮    ╭ Fitness ────╮╭ Population ╮
+///  ╰─────────╯╰────────────╯╰─────────╯    ╰─────────────╯╰────────────╯
+/// ```
+pub(in crate::dashboard) fn panels(area: Rect) -> Vec<(ViewId, Rect)> {
+    let upper = area.height * 11 / 20;
+    let rows = Layout::vertical([Constraint::Length(upper), Constraint::Fill(1)]).areas(area);
+    let [above, below]: [Rect; 2] = rows;
+    // Cells are about twice as high as wide: a square arena.
+    let square = (upper.saturating_sub(2) * 2 + 2).min(area.width / 2);
+    if area.width < WIDE {
+        let [arena, hierarchy] = columns(above, [Constraint::Length(square), Constraint::Fill(1)]);
+        let [fitness, population] = columns(below, [Constraint::Fill(1), Constraint::Fill(1)]);
+        return vec![
+            (ViewId::Arena, arena),
+            (ViewId::Hierarchy, hierarchy),
+            (ViewId::Fitness, fitness),
+            (ViewId::Population, population),
+        ];
+    }
+    let upper = [
+        Constraint::Length(square),
+        Constraint::Fill(1),
+        Constraint::Fill(1),
+    ];
+    let [arena, hierarchy, status] = columns(above, upper);
+    let [fitness, policy, population] = columns(below, [Constraint::Fill(1); 3]);
+    vec![
+        (ViewId::Arena, arena),
+        (ViewId::Hierarchy, hierarchy),
+        (ViewId::Status, status),
+        (ViewId::Fitness, fitness),
+        (ViewId::Policy, policy),
+        (ViewId::Population, population),
+    ]
+}
+
+fn columns<const N: usize>(area: Rect, widths: [Constraint; N]) -> [Rect; N] {
+    Layout::horizontal(widths).areas(area)
+}
+
+impl View for Overview {
+    fn draw(&self, _desk: &Desk, _area: Rect, _buffer: &mut Buffer) {}
+
+    fn hints(&self) -> &'static [Action] {
+        &[]
+    }
+
+    fn lesson(&self) -> &'static str {
+        "A population of MAXQ task hierarchies lives in one world. In every generation each\n\
+         learns while it acts in the same trials; the fewest time steps win. The best live on,\n\
+         typed crossover of the good replaces the rest, and offspring inherit what their\n\
+         parents have learned. Watch fitness fall, structures become alike, and policies settle.\n\
+         \n\
+         Tab moves the focus from panel to panel, Enter opens one, ? explains it."
+    }
+}
