@@ -9,8 +9,9 @@ mod common;
 
 use maxq_lab::dashboard::keys::KeyMap;
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
-use maxq_lab::dashboard::{App, FrameFormat, Input, Mode, Setting, ViewId, render};
+use maxq_lab::dashboard::{App, FrameFormat, Input, Mode, ViewId, render};
 use maxq_lab::hierarchy::Glyphs;
+use maxq_lab::lab::specimen::{Bench, bench};
 use maxq_lab::lab::{Event, read_events};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -23,17 +24,17 @@ fn events() -> Vec<Event> {
     read_events(&folder.join("events.jsonl")).unwrap()
 }
 
-fn app() -> App {
-    let setting = Setting::new(common::short(&[]), 1, String::from("runs/smoke-seed1")).unwrap();
+fn app(bench: &dyn Bench) -> App<'_> {
+    let folder = String::from("runs/smoke-seed1");
     let look = Look::new(Theme::all(), "dark", Signs::of(Glyphs::Unicode));
-    let mut app = App::new(setting, Mode::Replay, look, KeyMap::default());
+    let mut app = App::new(bench, folder, Mode::Replay, look, KeyMap::default());
     for event in events() {
         app.update(Input::Event(Box::new(event)));
     }
     app
 }
 
-fn frame(app: &App, (width, height): (u16, u16)) -> Buffer {
+fn frame(app: &App<'_>, (width, height): (u16, u16)) -> Buffer {
     let mut buffer = Buffer::empty(Rect::new(0, 0, width, height));
     app.draw_on(&mut buffer);
     buffer
@@ -41,7 +42,8 @@ fn frame(app: &App, (width, height): (u16, u16)) -> Buffer {
 
 #[test]
 fn every_view_draws_at_every_size() {
-    let mut app = app();
+    let bench = bench(common::short(&[]), 1).unwrap();
+    let mut app = app(bench.as_ref());
     for view in ViewId::all() {
         app.open(view);
         for size in [

@@ -14,9 +14,9 @@ use super::keys::{Action, Key, KeyMap, Scope};
 use super::look::{Look, Paint, put};
 use super::overlay::{self, Overlay};
 use super::panel::panel;
-use super::setting::Setting;
 use super::views::{self, View, ViewId, panels};
 use crate::lab::Event;
+use crate::lab::specimen::Bench;
 
 /// Smallest size, in columns and rows, at which there is something to see.
 pub const SMALLEST: (u16, u16) = (40, 12);
@@ -25,20 +25,21 @@ pub const SMALLEST: (u16, u16) = (40, 12);
 const MESSAGE_TIME: Duration = Duration::from_secs(8);
 
 /// The dashboard.
-pub struct App {
-    desk: Desk,
+pub struct App<'b> {
+    desk: Desk<'b>,
     views: Vec<(ViewId, Box<dyn View>)>,
     view: ViewId,
     overlay: Option<Overlay>,
     dirty: bool,
 }
 
-impl App {
-    /// A dashboard over a run that has not told anything yet.
+impl<'b> App<'b> {
+    /// A dashboard over a run that has not told anything yet; `folder` is its folder, for
+    /// people.
     #[must_use]
-    pub fn new(setting: Setting, mode: Mode, look: Look, keys: KeyMap) -> Self {
+    pub fn new(bench: &'b dyn Bench, folder: String, mode: Mode, look: Look, keys: KeyMap) -> Self {
         Self {
-            desk: Desk::new(setting, mode, look, keys),
+            desk: Desk::new(bench, folder, mode, look, keys),
             views: views::all(),
             view: ViewId::Overview,
             overlay: None,
@@ -48,7 +49,7 @@ impl App {
 
     /// What the person has chosen to look at.
     #[must_use]
-    pub fn desk(&self) -> &Desk {
+    pub fn desk(&self) -> &Desk<'b> {
         &self.desk
     }
 
@@ -59,17 +60,17 @@ impl App {
     }
 
     /// Opens a view.
-    pub fn open(&mut self, view: ViewId) {
+    pub fn open(&mut self, view: ViewId) -> Vec<Effect> {
         self.view = view;
         self.dirty = true;
-        self.prepare();
+        self.prepare()
     }
 
     /// Travels to the generation with this number, or the nearest that there is.
-    pub fn travel_to(&mut self, generation: u64) {
+    pub fn travel_to(&mut self, generation: u64) -> Vec<Effect> {
         self.desk.travel_to(generation);
         self.dirty = true;
-        self.prepare();
+        self.prepare()
     }
 
     /// Whether the frame drawn last is not what there is to see now. Asking takes the
@@ -96,12 +97,16 @@ impl App {
                 self.desk.closed = true;
             }
             Input::Tick(elapsed) => self.tick(elapsed),
+            Input::Population { generation, state } => {
+                self.dirty = true;
+                self.desk.stage.receive(generation, state);
+            }
             Input::Message(text) => {
                 self.dirty = true;
                 self.desk.say(text);
             }
         }
-        self.prepare();
+        effects.extend(self.prepare());
         effects
     }
 
@@ -119,6 +124,9 @@ impl App {
 
     fn tick(&mut self, elapsed: Duration) {
         self.dirty |= self.desk.tick(elapsed);
+        if self.on_screen().iter().any(|view| view.needs_stage()) {
+            self.dirty |= self.desk.stage.tick(elapsed);
+        }
         let old = |since: Duration| self.desk.clock.saturating_sub(since) > MESSAGE_TIME;
         if self
             .desk
@@ -131,14 +139,22 @@ impl App {
         }
     }
 
-    /// Lets the views on the screen compute what they draw.
-    fn prepare(&mut self) {
+    /// Puts on the stage what is looked at, and lets the views on the screen compute what
+    /// they draw.
+    fn prepare(&mut self) -> Vec<Effect> {
         let on_screen = self.on_screen();
+        let mut effects = Vec::new();
+        if on_screen.iter().any(|view| view.needs_stage()) {
+            let (wanted, by_choice) = (self.desk.wanted(), !self.desk.follows());
+            let load = self.desk.stage.want(wanted, by_choice);
+            effects.extend(load.map(|generation| Effect::Load { generation }));
+        }
         for (id, view) in &mut self.views {
             if on_screen.contains(id) {
                 view.prepare(&self.desk);
             }
         }
+        effects
     }
 
     fn on_screen(&self) -> Vec<ViewId> {
@@ -246,6 +262,11 @@ impl App {
             Action::First => desk.travel_to(0),
             Action::Follow => desk.travel_to(u64::MAX),
             Action::Play => desk.toggle_play(),
+            Action::Halt => desk.stage.toggle_halt(),
+            Action::StepRollout => desk.stage.step(),
+            Action::Faster => desk.stage.change_speed(true),
+            Action::Slower => desk.stage.change_speed(false),
+            Action::Restart => desk.stage.restart(),
             Action::Theme => {
                 desk.look.next_theme();
                 let theme = desk.look.theme().to_owned();
@@ -408,7 +429,7 @@ fn body(area: Rect) -> Rect {
     }
 }
 
-fn too_small(desk: &Desk, area: Rect, buffer: &mut Buffer) {
+fn too_small(desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
     let style = desk.look.style(Paint::Notice);
     let (columns, rows) = SMALLEST;
     let lines = [

@@ -7,10 +7,14 @@ use super::keys::KeyMap;
 use super::look::Look;
 use super::model::Model;
 use super::pace::Pace;
-use super::setting::Setting;
+use super::stage::{Stage, Subject};
 use super::views::ViewId;
 use crate::evolution::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Tree, parse};
+use crate::lab::specimen::Bench;
+use crate::scenario::Scenario;
+use crate::worlds::Catalogue;
+use crate::worlds::scene::Scenery;
 
 /// Generations a second while time runs through them.
 const PLAYED_PER_SECOND: u32 = 4;
@@ -64,10 +68,13 @@ pub enum Activity {
 }
 
 /// What every view reads: the run, and what the person has chosen to see of it.
-#[derive(Debug)]
-pub struct Desk {
-    /// What does not change.
-    pub setting: Setting,
+pub struct Desk<'b> {
+    /// The scenario and its world.
+    pub bench: &'b dyn Bench,
+    /// The run folder, for people.
+    pub folder: String,
+    /// The rollout of the individual that is looked at.
+    pub stage: Stage<'b>,
     /// How the dashboard stands to its run.
     pub mode: Mode,
     /// Themes and signs.
@@ -97,12 +104,14 @@ pub struct Desk {
     played: Duration,
 }
 
-impl Desk {
+impl<'b> Desk<'b> {
     /// A desk at the beginning of a run.
     #[must_use]
-    pub fn new(setting: Setting, mode: Mode, look: Look, keys: KeyMap) -> Self {
+    pub fn new(bench: &'b dyn Bench, folder: String, mode: Mode, look: Look, keys: KeyMap) -> Self {
         Self {
-            setting,
+            bench,
+            folder,
+            stage: Stage::new(bench),
             mode,
             look,
             keys,
@@ -121,6 +130,24 @@ impl Desk {
             held: None,
             played: Duration::ZERO,
         }
+    }
+
+    /// The scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &'b Scenario {
+        self.bench.scenario()
+    }
+
+    /// The world's subtasks.
+    #[must_use]
+    pub fn catalogue(&self) -> &'b Catalogue {
+        self.bench.catalogue()
+    }
+
+    /// What there is to see of the world.
+    #[must_use]
+    pub fn scenery(&self) -> &'b Scenery {
+        self.bench.scenery()
     }
 
     /// The run as it is, whatever is shown.
@@ -257,7 +284,29 @@ impl Desk {
     /// The hierarchy of an individual; `None` where its text is none of this world.
     #[must_use]
     pub fn tree(&self, individual: &RankedRecord) -> Option<Tree> {
-        parse(&individual.tree, &self.setting.catalogue).ok()
+        parse(&individual.tree, self.catalogue()).ok()
+    }
+
+    /// The individual on the stage, if it is in the generation shown; else the selected one.
+    #[must_use]
+    pub fn looked_at(&self) -> Option<&RankedRecord> {
+        let staged = self.stage.subject().map(|subject| subject.id);
+        let mut individuals = self.shown()?.individuals.iter();
+        let staged = individuals.find(|individual| Some(individual.id) == staged);
+        staged.or_else(|| self.selected())
+    }
+
+    /// The individual that should be on the stage.
+    pub(super) fn wanted(&self) -> Option<Subject> {
+        Some(Subject {
+            generation: self.shown()?.generation,
+            id: self.selected()?.id,
+        })
+    }
+
+    /// Whether evolution chooses what is on the stage.
+    pub(super) fn follows(&self) -> bool {
+        self.chosen == Chosen::Best && self.time == Time::Latest && !self.frozen()
     }
 
     /// Says something to the person.

@@ -25,7 +25,7 @@ const COMMON: &[Action] = &[
 /// ```text
 ///  ▶ RUNNING  environment-1 seed 1 · generation 12 of at most 200 · Overview      FROZEN at 11
 /// ```
-pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw(desk: &Desk<'_>, view: ViewId, area: Rect, buffer: &mut Buffer) {
     let line = Rect {
         height: area.height.min(1),
         ..area
@@ -38,8 +38,7 @@ pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
     let right = marks.iter().map(|mark| width(mark) + 1).sum::<usize>();
     let room = usize::from(line.width.saturating_sub(column)).saturating_sub(right);
     let separator = look.signs.separator;
-    let setting = &desk.setting;
-    let name = one_line(&setting.scenario.name);
+    let name = one_line(&desk.scenario().name);
     let time = match desk.shown() {
         Some(record) => format!("generation {}", record.generation),
         None => String::from("before the first generation"),
@@ -47,7 +46,7 @@ pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
     let text = format!(
         " {} {separator} {time} {separator} {name} seed {}",
         view.title(),
-        setting.seed
+        desk.bench.seed()
     );
     column = put(
         buffer,
@@ -66,7 +65,7 @@ pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Sign, word and paint of what evolution is doing.
-pub(super) fn activity(desk: &Desk) -> (&'static str, &'static str, Paint) {
+pub(super) fn activity(desk: &Desk<'_>) -> (&'static str, &'static str, Paint) {
     let signs = desk.look.signs;
     match desk.activity() {
         Activity::Training => (signs.running, "TRAINING", Paint::Good),
@@ -83,7 +82,7 @@ pub(super) fn activity(desk: &Desk) -> (&'static str, &'static str, Paint) {
 }
 
 /// What makes the screen show something else than the present.
-fn marks(desk: &Desk) -> Vec<String> {
+fn marks(desk: &Desk<'_>) -> Vec<String> {
     let mut marks = Vec::new();
     match desk.mode {
         Mode::Live => {}
@@ -105,7 +104,7 @@ fn marks(desk: &Desk) -> Vec<String> {
 
 /// Draws the last line: a message, or what keys do.
 pub(super) fn hint_bar(
-    desk: &Desk,
+    desk: &Desk<'_>,
     view: ViewId,
     hints: &[Action],
     area: Rect,

@@ -1,8 +1,10 @@
 //! What reaches the dashboard, and what it wants done.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::keys::Key;
+use crate::evolution::State;
 use crate::lab::Event;
 
 /// Something that happened.
@@ -18,6 +20,13 @@ pub enum Input {
     Closed,
     /// So much time went by since the last tick.
     Tick(Duration),
+    /// The population after a generation, or why it cannot be had.
+    Population {
+        /// The generation.
+        generation: u64,
+        /// Its individuals with all that they have learned.
+        state: Result<Arc<State>, String>,
+    },
     /// Whoever drives the dashboard has something to say: an export was written, a file
     /// could not be read.
     Message(String),
@@ -44,6 +53,11 @@ pub enum Effect {
     Suspend,
     /// Forget what is on the terminal and draw everything again.
     Redraw,
+    /// Fetch the population after a generation; the answer is [`Input::Population`].
+    Load {
+        /// The generation.
+        generation: u64,
+    },
     /// Write a file for the person.
     Export(Export),
 }

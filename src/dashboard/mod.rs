@@ -13,6 +13,7 @@
 //! | `app` | the state and its two functions |
 //! | `model` | the fold over the events of the run |
 //! | `desk` | what the person has chosen to look at; every view reads it |
+//! | `stage` | the rollout of the individual that is looked at |
 //! | `keys` | actions, keys, and which key does what: one list for input, hints and help |
 //! | `look` | themes, signs, lines of text, the canvas that arenas are drawn on |
 //! | `views` | one file a view; a view in a corner of the overview is a panel |
@@ -33,7 +34,7 @@ mod model;
 mod overlay;
 mod pace;
 mod panel;
-mod setting;
+mod stage;
 pub mod views;
 
 pub use app::App;
@@ -42,5 +43,5 @@ pub use desk::{Chosen, Desk, Mode, Time};
 pub use export::{FrameFormat, render};
 pub use input::{Effect, Export, Input};
 pub use model::{Model, Progress};
-pub use setting::Setting;
+pub use stage::{SPEEDS, Stage, Subject};
 pub use views::ViewId;

@@ -22,16 +22,16 @@ use crate::hierarchy::{draw, to_dot};
 pub(super) struct Hierarchy;
 
 impl View for Hierarchy {
-    fn caption(&self, desk: &Desk) -> String {
+    fn caption(&self, desk: &Desk<'_>) -> String {
         let Some(selected) = desk.selected() else {
             return String::new();
         };
         format!("individual {}, rank {}", selected.id, selected.rank)
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
-        let catalogue = &desk.setting.catalogue;
+        let catalogue = desk.catalogue();
         let Some(tree) = desk.selected().and_then(|selected| desk.tree(selected)) else {
             let text = fitted(
                 "no individual has lived yet",
@@ -73,9 +73,9 @@ impl View for Hierarchy {
         &[Action::Best, Action::Up, Action::Down]
     }
 
-    fn dot(&self, desk: &Desk) -> Option<String> {
+    fn dot(&self, desk: &Desk<'_>) -> Option<String> {
         let tree = desk.tree(desk.selected()?)?;
-        Some(to_dot(&tree, &desk.setting.catalogue))
+        Some(to_dot(&tree, desk.catalogue()))
     }
 
     fn lesson(&self) -> &'static str {

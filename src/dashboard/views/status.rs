@@ -16,7 +16,7 @@ use crate::lab::Ending;
 pub(super) struct Status;
 
 impl View for Status {
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
         for (row, (name, value, paint)) in facts(desk).iter().enumerate() {
             let Ok(row) = u16::try_from(row) else { return };
@@ -39,14 +39,14 @@ impl View for Status {
 
 type Fact = (&'static str, String, Paint);
 
-fn facts(desk: &Desk) -> Vec<Fact> {
-    let (model, setting) = (desk.live(), &desk.setting);
-    let evolution = &setting.scenario.evolution;
+fn facts(desk: &Desk<'_>) -> Vec<Fact> {
+    let model = desk.live();
+    let evolution = &desk.scenario().evolution;
     let (sign, word, paint) = activity(desk);
     let mut facts = vec![
         ("evolution", format!("{sign} {word}"), paint),
-        ("scenario", setting.scenario.name.clone(), Paint::Text),
-        ("seed", setting.seed.to_string(), Paint::Text),
+        ("scenario", desk.scenario().name.clone(), Paint::Text),
+        ("seed", desk.bench.seed().to_string(), Paint::Text),
     ];
     let lived = model.latest().map_or(0, |record| record.generation);
     let limit = evolution.generation_limit;
@@ -84,7 +84,7 @@ fn facts(desk: &Desk) -> Vec<Fact> {
         None => String::from("none yet"),
     };
     facts.push(("checkpoint", saved, Paint::Text));
-    facts.push(("folder", setting.folder.clone(), Paint::Text));
+    facts.push(("folder", desk.folder.clone(), Paint::Text));
     facts
 }
 

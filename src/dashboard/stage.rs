@@ -1,0 +1,269 @@
+//! The stage: a rollout of the individual that is looked at.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::evolution::State;
+use crate::hierarchy::Tree;
+use crate::lab::specimen::{Bench, Rollout, Specimen, StepTrace};
+
+/// Speeds of a rollout: times real time.
+pub const SPEEDS: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+/// A speed at which a robot is seen to move and a trial takes a second or two.
+const FIRST_SPEED: usize = 3;
+
+/// What a time step lasts in a world whose time is not real.
+const NOMINAL_STEP_S: f64 = 0.2;
+
+/// Up to this speed the end of a trial is held for a moment.
+const UNHURRIED: u32 = 50;
+const HOLD: Duration = Duration::from_millis(700);
+
+/// Time after which a rollout gives way to the new best of evolution, in the middle of
+/// a trial too.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Most time steps between two frames.
+const MOST_STEPS: u32 = 5_000;
+
+/// Whose rollout it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// The generation that it was taken from.
+    pub generation: u64,
+    /// The individual.
+    pub id: u64,
+}
+
+/// A rollout of the individual that is looked at, on a copy with a random stream of its
+/// own: watching never touches evolution.
+pub struct Stage<'b> {
+    bench: &'b dyn Bench,
+    population: Option<Arc<State>>,
+    /// The generation that was asked for last, and why it is not there.
+    asked: Option<u64>,
+    refused: Option<(u64, String)>,
+    subject: Option<Subject>,
+    rollout: Option<Box<dyn Rollout + 'b>>,
+    trace: Option<Box<StepTrace>>,
+    number: u64,
+    halted: bool,
+    speed: usize,
+    owed: f64,
+    shown_for: Duration,
+    held_for: Duration,
+}
+
+impl<'b> Stage<'b> {
+    pub(super) fn new(bench: &'b dyn Bench) -> Self {
+        Self {
+            bench,
+            population: None,
+            asked: None,
+            refused: None,
+            subject: None,
+            rollout: None,
+            trace: None,
+            number: 0,
+            halted: false,
+            speed: FIRST_SPEED,
+            owed: 0.0,
+            shown_for: Duration::ZERO,
+            held_for: Duration::ZERO,
+        }
+    }
+
+    /// The population on the stage, with everything that it has learned.
+    #[must_use]
+    pub fn population(&self) -> Option<&Arc<State>> {
+        self.population.as_ref()
+    }
+
+    /// Whose rollout it is.
+    #[must_use]
+    pub fn subject(&self) -> Option<Subject> {
+        self.subject
+    }
+
+    /// The individual on the stage, with what it had learned when it came there.
+    #[must_use]
+    pub fn specimen(&self) -> Option<Specimen<'_>> {
+        Specimen::with_id(self.population.as_deref()?, self.subject?.id)
+    }
+
+    /// The hierarchy of the individual on the stage.
+    #[must_use]
+    pub fn tree(&self) -> Option<&Tree> {
+        Some(self.specimen()?.individual.hierarchy.tree())
+    }
+
+    /// The rollout.
+    #[must_use]
+    pub fn rollout(&self) -> Option<&(dyn Rollout + 'b)> {
+        self.rollout.as_deref()
+    }
+
+    /// The time step that was taken last, if it was taken alone.
+    #[must_use]
+    pub fn trace(&self) -> Option<&StepTrace> {
+        self.trace.as_deref()
+    }
+
+    /// Why there is nothing on the stage.
+    #[must_use]
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.as_ref().map(|(_, why)| why.as_str())
+    }
+
+    /// Whether the rollout is halted.
+    #[must_use]
+    pub fn halted(&self) -> bool {
+        self.halted
+    }
+
+    /// Halts the rollout, or lets it go on.
+    pub fn toggle_halt(&mut self) {
+        self.halted = !self.halted;
+        self.owed = 0.0;
+    }
+
+    /// Speed of the rollout: times real time.
+    #[must_use]
+    pub fn speed(&self) -> u32 {
+        SPEEDS[self.speed.min(SPEEDS.len() - 1)]
+    }
+
+    /// Makes the rollout faster, or slower.
+    pub fn change_speed(&mut self, faster: bool) {
+        self.speed = match faster {
+            true => (self.speed + 1).min(SPEEDS.len() - 1),
+            false => self.speed.saturating_sub(1),
+        };
+    }
+
+    /// Halts the rollout and takes one time step, with everything that decided it.
+    pub fn step(&mut self) {
+        self.halted = true;
+        self.owed = 0.0;
+        if let Some(rollout) = &mut self.rollout {
+            self.trace = rollout.step().map(Box::new);
+        }
+    }
+
+    /// Begins another rollout of the same individual: another start, other chances, and
+    /// nothing kept of what the last one learned.
+    pub fn restart(&mut self) {
+        self.number += 1;
+        self.begin();
+    }
+
+    /// Gives the present trial up and begins the next.
+    pub fn next_trial(&mut self) {
+        self.trace = None;
+        if let Some(rollout) = &mut self.rollout {
+            rollout.begin_trial();
+        }
+    }
+
+    /// Takes in a population, or why there is none.
+    pub(super) fn receive(&mut self, generation: u64, state: Result<Arc<State>, String>) {
+        if self.asked == Some(generation) {
+            self.asked = None;
+        }
+        match state {
+            Ok(state) => {
+                self.refused = None;
+                self.population = Some(state);
+            }
+            Err(why) => self.refused = Some((generation, why)),
+        }
+    }
+
+    /// Puts the individual on the stage that the person looks at. `by_choice` tells
+    /// whether the person chose it, or evolution went on by itself: then the trial on the
+    /// stage may end. Returns the generation to be loaded for it.
+    pub(super) fn want(&mut self, wanted: Option<Subject>, by_choice: bool) -> Option<u64> {
+        let wanted = wanted?;
+        let here = self.subject;
+        if here == Some(wanted) {
+            return None;
+        }
+        if !by_choice && here.is_some() && !self.gives_way() {
+            return None;
+        }
+        let loaded = self.population.as_ref().map(|state| state.generation);
+        if loaded != Some(wanted.generation) {
+            let refused = self.refused.as_ref().map(|(generation, _)| *generation);
+            if refused == Some(wanted.generation) {
+                self.subject = None;
+                self.rollout = None;
+                return None;
+            }
+            if self.asked == Some(wanted.generation) {
+                return None;
+            }
+            self.asked = Some(wanted.generation);
+            return self.asked;
+        }
+        self.subject = Some(wanted);
+        // An individual that lives on goes on with what it is doing.
+        if by_choice || here.is_none_or(|here| here.id != wanted.id) {
+            self.begin();
+        } else {
+            self.shown_for = Duration::ZERO;
+        }
+        None
+    }
+
+    fn gives_way(&self) -> bool {
+        let ended = self
+            .rollout
+            .as_ref()
+            .is_none_or(|rollout| rollout.status().ended.is_some());
+        !self.halted && (ended || self.shown_for >= PATIENCE)
+    }
+
+    fn begin(&mut self) {
+        let (bench, number) = (self.bench, self.number);
+        let rollout = self
+            .specimen()
+            .map(|specimen| bench.rollout(specimen, number));
+        self.rollout = rollout;
+        self.trace = None;
+        self.owed = 0.0;
+        self.shown_for = Duration::ZERO;
+        self.held_for = Duration::ZERO;
+    }
+
+    /// Lets time go by. Whether anything has changed.
+    pub(super) fn tick(&mut self, elapsed: Duration) -> bool {
+        let speed = self.speed();
+        let (false, Some(rollout)) = (self.halted, &mut self.rollout) else {
+            return false;
+        };
+        self.shown_for += elapsed;
+        if rollout.status().ended.is_some() && speed <= UNHURRIED {
+            self.held_for += elapsed;
+            if self.held_for < HOLD {
+                return false;
+            }
+            self.held_for = Duration::ZERO;
+        }
+        let step_s = self.bench.scenery().time_step_s.unwrap_or(NOMINAL_STEP_S);
+        self.owed += elapsed.as_secs_f64() * f64::from(speed) / step_s;
+        let mut left = (self.owed as u32).min(MOST_STEPS);
+        if left == 0 {
+            return false;
+        }
+        self.trace = None;
+        self.owed = self.owed.fract();
+        while left > 0 {
+            rollout.advance(1);
+            left -= 1;
+            if speed <= UNHURRIED && rollout.status().ended.is_some() {
+                break;
+            }
+        }
+        true
+    }
+}
