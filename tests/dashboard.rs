@@ -24,7 +24,7 @@ fn events() -> Vec<Event> {
     read_events(&folder.join("events.jsonl")).unwrap()
 }
 
-fn app(bench: &dyn Bench) -> App<'_> {
+fn app(bench: &'static dyn Bench) -> App {
     let folder = String::from("runs/smoke-seed1");
     let look = Look::new(Theme::all(), "dark", Signs::of(Glyphs::Unicode));
     let mut app = App::new(bench, folder, Mode::Replay, look, KeyMap::default());
@@ -34,7 +34,7 @@ fn app(bench: &dyn Bench) -> App<'_> {
     app
 }
 
-fn frame(app: &App<'_>, (width, height): (u16, u16)) -> Buffer {
+fn frame(app: &App, (width, height): (u16, u16)) -> Buffer {
     let mut buffer = Buffer::empty(Rect::new(0, 0, width, height));
     app.draw_on(&mut buffer);
     buffer
@@ -43,7 +43,7 @@ fn frame(app: &App<'_>, (width, height): (u16, u16)) -> Buffer {
 #[test]
 fn every_view_draws_at_every_size() {
     let bench = bench(common::short(&[]), 1).unwrap();
-    let mut app = app(bench.as_ref());
+    let mut app = app(bench);
     for view in ViewId::all() {
         app.open(view);
         for size in [

@@ -25,19 +25,25 @@ pub const SMALLEST: (u16, u16) = (40, 12);
 const MESSAGE_TIME: Duration = Duration::from_secs(8);
 
 /// The dashboard.
-pub struct App<'b> {
-    desk: Desk<'b>,
+pub struct App {
+    desk: Desk,
     views: Vec<(ViewId, Box<dyn View>)>,
     view: ViewId,
     overlay: Option<Overlay>,
     dirty: bool,
 }
 
-impl<'b> App<'b> {
+impl App {
     /// A dashboard over a run that has not told anything yet; `folder` is its folder, for
     /// people.
     #[must_use]
-    pub fn new(bench: &'b dyn Bench, folder: String, mode: Mode, look: Look, keys: KeyMap) -> Self {
+    pub fn new(
+        bench: &'static dyn Bench,
+        folder: String,
+        mode: Mode,
+        look: Look,
+        keys: KeyMap,
+    ) -> Self {
         Self {
             desk: Desk::new(bench, folder, mode, look, keys),
             views: views::all(),
@@ -49,7 +55,7 @@ impl<'b> App<'b> {
 
     /// What the person has chosen to look at.
     #[must_use]
-    pub fn desk(&self) -> &Desk<'b> {
+    pub fn desk(&self) -> &Desk {
         &self.desk
     }
 
@@ -429,7 +435,7 @@ fn body(area: Rect) -> Rect {
     }
 }
 
-fn too_small(desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
+fn too_small(desk: &Desk, area: Rect, buffer: &mut Buffer) {
     let style = desk.look.style(Paint::Notice);
     let (columns, rows) = SMALLEST;
     let lines = [

@@ -68,13 +68,13 @@ pub enum Activity {
 }
 
 /// What every view reads: the run, and what the person has chosen to see of it.
-pub struct Desk<'b> {
+pub struct Desk {
     /// The scenario and its world.
-    pub bench: &'b dyn Bench,
+    pub bench: &'static dyn Bench,
     /// The run folder, for people.
     pub folder: String,
     /// The rollout of the individual that is looked at.
-    pub stage: Stage<'b>,
+    pub stage: Stage,
     /// How the dashboard stands to its run.
     pub mode: Mode,
     /// Themes and signs.
@@ -104,10 +104,16 @@ pub struct Desk<'b> {
     played: Duration,
 }
 
-impl<'b> Desk<'b> {
+impl Desk {
     /// A desk at the beginning of a run.
     #[must_use]
-    pub fn new(bench: &'b dyn Bench, folder: String, mode: Mode, look: Look, keys: KeyMap) -> Self {
+    pub fn new(
+        bench: &'static dyn Bench,
+        folder: String,
+        mode: Mode,
+        look: Look,
+        keys: KeyMap,
+    ) -> Self {
         Self {
             bench,
             folder,
@@ -134,19 +140,19 @@ impl<'b> Desk<'b> {
 
     /// The scenario.
     #[must_use]
-    pub fn scenario(&self) -> &'b Scenario {
+    pub fn scenario(&self) -> &'static Scenario {
         self.bench.scenario()
     }
 
     /// The world's subtasks.
     #[must_use]
-    pub fn catalogue(&self) -> &'b Catalogue {
+    pub fn catalogue(&self) -> &'static Catalogue {
         self.bench.catalogue()
     }
 
     /// What there is to see of the world.
     #[must_use]
-    pub fn scenery(&self) -> &'b Scenery {
+    pub fn scenery(&self) -> &'static Scenery {
         self.bench.scenery()
     }
 

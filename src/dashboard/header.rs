@@ -25,7 +25,7 @@ const COMMON: &[Action] = &[
 /// ```text
 ///  ▶ RUNNING  environment-1 seed 1 · generation 12 of at most 200 · Overview      FROZEN at 11
 /// ```
-pub(super) fn draw(desk: &Desk<'_>, view: ViewId, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
     let line = Rect {
         height: area.height.min(1),
         ..area
@@ -65,7 +65,7 @@ pub(super) fn draw(desk: &Desk<'_>, view: ViewId, area: Rect, buffer: &mut Buffe
 }
 
 /// Sign, word and paint of what evolution is doing.
-pub(super) fn activity(desk: &Desk<'_>) -> (&'static str, &'static str, Paint) {
+pub(super) fn activity(desk: &Desk) -> (&'static str, &'static str, Paint) {
     let signs = desk.look.signs;
     match desk.activity() {
         Activity::Training => (signs.running, "TRAINING", Paint::Good),
@@ -82,7 +82,7 @@ pub(super) fn activity(desk: &Desk<'_>) -> (&'static str, &'static str, Paint) {
 }
 
 /// What makes the screen show something else than the present.
-fn marks(desk: &Desk<'_>) -> Vec<String> {
+fn marks(desk: &Desk) -> Vec<String> {
     let mut marks = Vec::new();
     match desk.mode {
         Mode::Live => {}
@@ -104,7 +104,7 @@ fn marks(desk: &Desk<'_>) -> Vec<String> {
 
 /// Draws the last line: a message, or what keys do.
 pub(super) fn hint_bar(
-    desk: &Desk<'_>,
+    desk: &Desk,
     view: ViewId,
     hints: &[Action],
     area: Rect,

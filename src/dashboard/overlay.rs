@@ -49,7 +49,7 @@ impl Question {
         }
     }
 
-    pub(super) fn yes(self, desk: &mut Desk<'_>) -> Vec<Effect> {
+    pub(super) fn yes(self, desk: &mut Desk) -> Vec<Effect> {
         match self {
             Self::Quit => vec![Effect::Quit],
             Self::Stop => {
@@ -66,7 +66,7 @@ type Line = (String, String, Paint);
 /// Draws what is open.
 pub(super) fn draw(
     open: &Overlay,
-    desk: &Desk<'_>,
+    desk: &Desk,
     view: ViewId,
     lesson: &str,
     area: Rect,
@@ -100,7 +100,7 @@ fn plain(text: &str) -> Line {
     (String::new(), text.to_owned(), Paint::Text)
 }
 
-fn line(desk: &Desk<'_>, action: Action) -> Line {
+fn line(desk: &Desk, action: Action) -> Line {
     let keys: Vec<_> = desk
         .keys
         .keys(action)
@@ -111,13 +111,13 @@ fn line(desk: &Desk<'_>, action: Action) -> Line {
     (keys.join(" "), description.to_owned(), Paint::Text)
 }
 
-fn of_scope(desk: &Desk<'_>, scope: Scope) -> Vec<Line> {
+fn of_scope(desk: &Desk, scope: Scope) -> Vec<Line> {
     let actions = Action::ALL.iter().filter(|action| action.scope() == scope);
     actions.map(|&action| line(desk, action)).collect()
 }
 
 /// The lesson of the view and all keys that do something in it.
-pub(super) fn help_lines(desk: &Desk<'_>, view: ViewId, lesson: &str) -> Vec<Line> {
+pub(super) fn help_lines(desk: &Desk, view: ViewId, lesson: &str) -> Vec<Line> {
     let mut lines: Vec<_> = lesson.lines().map(plain).collect();
     lines.push(plain(""));
     for &action in Action::ALL {
@@ -135,7 +135,7 @@ pub(super) fn help_lines(desk: &Desk<'_>, view: ViewId, lesson: &str) -> Vec<Lin
 
 /// Draws lines in a window in the middle of the screen.
 fn window(
-    desk: &Desk<'_>,
+    desk: &Desk,
     titles: (&str, &str),
     lines: &[Line],
     scroll: u16,

@@ -37,14 +37,14 @@ pub struct Subject {
 
 /// A rollout of the individual that is looked at, on a copy with a random stream of its
 /// own: watching never touches evolution.
-pub struct Stage<'b> {
-    bench: &'b dyn Bench,
+pub struct Stage {
+    bench: &'static dyn Bench,
     population: Option<Arc<State>>,
     /// The generation that was asked for last, and why it is not there.
     asked: Option<u64>,
     refused: Option<(u64, String)>,
     subject: Option<Subject>,
-    rollout: Option<Box<dyn Rollout + 'b>>,
+    rollout: Option<Box<dyn Rollout>>,
     trace: Option<Box<StepTrace>>,
     number: u64,
     halted: bool,
@@ -54,8 +54,8 @@ pub struct Stage<'b> {
     held_for: Duration,
 }
 
-impl<'b> Stage<'b> {
-    pub(super) fn new(bench: &'b dyn Bench) -> Self {
+impl Stage {
+    pub(super) fn new(bench: &'static dyn Bench) -> Self {
         Self {
             bench,
             population: None,
@@ -99,7 +99,7 @@ impl<'b> Stage<'b> {
 
     /// The rollout.
     #[must_use]
-    pub fn rollout(&self) -> Option<&(dyn Rollout + 'b)> {
+    pub fn rollout(&self) -> Option<&dyn Rollout> {
         self.rollout.as_deref()
     }
 

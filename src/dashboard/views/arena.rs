@@ -22,7 +22,7 @@ use crate::worlds::scene::{Mark, Role};
 pub(super) struct Arena;
 
 impl View for Arena {
-    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let scenery = desk.scenery();
         let place = square(area, scenery.extent);
         let mut canvas = Canvas::new(&desk.look, place, [0.0, 0.0], scenery.extent);
@@ -49,7 +49,7 @@ impl View for Arena {
     }
 }
 
-fn draw_mark(desk: &Desk<'_>, canvas: &Canvas<'_>, mark: &Mark, area: Rect, buffer: &mut Buffer) {
+fn draw_mark(desk: &Desk, canvas: &Canvas<'_>, mark: &Mark, area: Rect, buffer: &mut Buffer) {
     let signs = desk.look.signs;
     let (sign, paint) = match mark.role {
         Role::Goal => (signs.goal, Paint::Goal),

@@ -24,7 +24,7 @@ const PAINTS: [Paint; 3] = [Paint::Best, Paint::Median, Paint::Worst];
 const NAMES: [&str; 3] = ["best", "median", "worst"];
 
 impl View for Fitness {
-    fn caption(&self, desk: &Desk<'_>) -> String {
+    fn caption(&self, desk: &Desk) -> String {
         let half = desk
             .shown()
             .map_or(0, |record| record.individuals.len() / 2);
@@ -34,7 +34,7 @@ impl View for Fitness {
         }
     }
 
-    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let records = desk.model().generations();
         let curves: Vec<[f64; 4]> = records.iter().filter_map(|record| point(record)).collect();
         let Some(highest) = curves.iter().map(|p| p[3]).reduce(f64::max) else {
@@ -107,7 +107,7 @@ impl View for Fitness {
         &[Action::Earlier, Action::Later, Action::Play]
     }
 
-    fn csv(&self, desk: &Desk<'_>) -> Option<String> {
+    fn csv(&self, desk: &Desk) -> Option<String> {
         let mut csv = String::from(
             "generation,best_steps,median_steps,worst_steps,mean_difference,converged\n",
         );

@@ -22,14 +22,14 @@ use crate::hierarchy::{draw, to_dot};
 pub(super) struct Hierarchy;
 
 impl View for Hierarchy {
-    fn caption(&self, desk: &Desk<'_>) -> String {
+    fn caption(&self, desk: &Desk) -> String {
         let Some(selected) = desk.selected() else {
             return String::new();
         };
         format!("individual {}, rank {}", selected.id, selected.rank)
     }
 
-    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
         let catalogue = desk.catalogue();
         let Some(tree) = desk.selected().and_then(|selected| desk.tree(selected)) else {
@@ -73,7 +73,7 @@ impl View for Hierarchy {
         &[Action::Best, Action::Up, Action::Down]
     }
 
-    fn dot(&self, desk: &Desk<'_>) -> Option<String> {
+    fn dot(&self, desk: &Desk) -> Option<String> {
         let tree = desk.tree(desk.selected()?)?;
         Some(to_dot(&tree, desk.catalogue()))
     }

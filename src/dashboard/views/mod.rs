@@ -110,31 +110,31 @@ impl FromStr for ViewId {
 /// keeps what is its own: a column to sort by, a cache of what is dear to compute.
 pub(super) trait View: Send {
     /// What the panel is about, after its title: whose, when, in which unit.
-    fn caption(&self, _desk: &Desk<'_>) -> String {
+    fn caption(&self, _desk: &Desk) -> String {
         String::new()
     }
 
     /// Draws into the area, which may be of any size.
-    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer);
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer);
 
     /// The actions that the hint bar names, most useful first.
     fn hints(&self) -> &'static [Action];
 
     /// Does what a key asks for; `None` where that is not this view's business.
-    fn act(&mut self, _desk: &mut Desk<'_>, _action: Action) -> Option<Vec<Effect>> {
+    fn act(&mut self, _desk: &mut Desk, _action: Action) -> Option<Vec<Effect>> {
         None
     }
 
     /// Computes what drawing needs, after every input while the view is on the screen.
-    fn prepare(&mut self, _desk: &Desk<'_>) {}
+    fn prepare(&mut self, _desk: &Desk) {}
 
     /// What is shown as a table, comma-separated values with a line of names.
-    fn csv(&self, _desk: &Desk<'_>) -> Option<String> {
+    fn csv(&self, _desk: &Desk) -> Option<String> {
         None
     }
 
     /// The hierarchy that is shown, as a Graphviz graph.
-    fn dot(&self, _desk: &Desk<'_>) -> Option<String> {
+    fn dot(&self, _desk: &Desk) -> Option<String> {
         None
     }
 

@@ -61,7 +61,7 @@ fn columns<const N: usize>(area: Rect, widths: [Constraint; N]) -> [Rect; N] {
 }
 
 impl View for Overview {
-    fn draw(&self, _desk: &Desk<'_>, _area: Rect, _buffer: &mut Buffer) {}
+    fn draw(&self, _desk: &Desk, _area: Rect, _buffer: &mut Buffer) {}
 
     fn hints(&self) -> &'static [Action] {
         &[]

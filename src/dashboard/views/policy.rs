@@ -14,11 +14,11 @@ use crate::dashboard::look::{Paint, put};
 pub(super) struct Policy;
 
 impl View for Policy {
-    fn caption(&self, _desk: &Desk<'_>) -> String {
+    fn caption(&self, _desk: &Desk) -> String {
         String::from("primitive selected, mean of the better half")
     }
 
-    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let Some(record) = desk.shown() else {
             put(
                 buffer,
@@ -60,7 +60,7 @@ impl View for Policy {
         &[Action::Earlier, Action::Later, Action::Play]
     }
 
-    fn csv(&self, desk: &Desk<'_>) -> Option<String> {
+    fn csv(&self, desk: &Desk) -> Option<String> {
         let mut csv = String::from("generation,state_type,primitive,probability\n");
         for record in desk.model().generations() {
             let types = record.selection_probabilities.iter().enumerate();

@@ -89,7 +89,7 @@ impl Population {
     }
 
     /// Selects the individual some lines further down.
-    fn select(&self, desk: &mut Desk<'_>, by: i64) {
+    fn select(&self, desk: &mut Desk, by: i64) {
         let sorted = self.sorted(desk);
         let selected = desk.selected().map(|individual| individual.id);
         let here = sorted
@@ -107,13 +107,13 @@ impl Population {
 }
 
 impl View for Population {
-    fn caption(&self, desk: &Desk<'_>) -> String {
+    fn caption(&self, desk: &Desk) -> String {
         desk.shown().map_or(String::new(), |record| {
             format!("generation {}", record.generation)
         })
     }
 
-    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
         let heads = "  rank    id  steps  com pri  diff  origin";
         put(buffer, area, (0, 0), heads, look.style(Paint::Dim));
@@ -154,7 +154,7 @@ impl View for Population {
         &[Action::Down, Action::Up, Action::Sort, Action::Reverse]
     }
 
-    fn act(&mut self, desk: &mut Desk<'_>, action: Action) -> Option<Vec<Effect>> {
+    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
         let page = i64::from(desk.size.1 / 2).max(1);
         match action {
             Action::Up => self.select(desk, -1),
@@ -170,7 +170,7 @@ impl View for Population {
         Some(Vec::new())
     }
 
-    fn csv(&self, desk: &Desk<'_>) -> Option<String> {
+    fn csv(&self, desk: &Desk) -> Option<String> {
         let mut csv = String::from(
             "rank,id,fitness_steps,trials,composites,primitives,difference,origin,tree\n",
         );

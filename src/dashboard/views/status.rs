@@ -16,7 +16,7 @@ use crate::lab::Ending;
 pub(super) struct Status;
 
 impl View for Status {
-    fn draw(&self, desk: &Desk<'_>, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
         for (row, (name, value, paint)) in facts(desk).iter().enumerate() {
             let Ok(row) = u16::try_from(row) else { return };
@@ -39,7 +39,7 @@ impl View for Status {
 
 type Fact = (&'static str, String, Paint);
 
-fn facts(desk: &Desk<'_>) -> Vec<Fact> {
+fn facts(desk: &Desk) -> Vec<Fact> {
     let model = desk.live();
     let evolution = &desk.scenario().evolution;
     let (sign, word, paint) = activity(desk);
