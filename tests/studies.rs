@@ -1,0 +1,290 @@
+//! A study is the same bytes however it is done: at once or broken off at any moment and
+//! gone on with, one run at a time or side by side, in any order; and every arm of it does
+//! what its name says.
+//!
+//! Why it matters: claims rest on hundreds of runs that no machine does in one sitting. If
+//! a run depended on what was done before it, nobody could check the others' numbers.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::thread;
+use std::time::Duration;
+
+use common::{SHORT, output, program, stderr, stdout};
+use maxq_lab::evolution::Origin;
+use maxq_lab::lab::{Event, Keep, RunFolder, read_events};
+use maxq_lab::report::{
+    Arm, Base, Happening, Plan, Reevaluation, Stage, Study, StudyControls, carry_out, status,
+};
+
+fn plan(arms: &[Base]) -> Plan {
+    let arm = |base: &Base| Arm {
+        settings: SHORT.iter().map(|&setting| setting.to_owned()).collect(),
+        ..Arm::of(*base)
+    };
+    let arms = arms.iter().map(arm).collect();
+    let mut plan = Plan::of(&[String::from("smoke")], "1..2".parse().unwrap(), arms).unwrap();
+    plan.reevaluation = Reevaluation {
+        warmup: 1,
+        trials: 2,
+        repeats: 4,
+        banks: 2,
+    };
+    plan
+}
+
+fn two() -> NonZeroUsize {
+    NonZeroUsize::new(2).unwrap()
+}
+
+fn do_all(study: &Study) {
+    let controls = StudyControls::default();
+    carry_out(
+        study,
+        &study.runs(),
+        two(),
+        Keep::None,
+        &controls,
+        |happening| {
+            if let Happening::Failed { error, .. } = happening {
+                panic!("{error}");
+            }
+        },
+    );
+}
+
+/// All files whose bytes follow from the plan alone.
+fn bytes(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            if path.is_dir() {
+                folders.push(path);
+            } else if [
+                "study.json",
+                "events.jsonl",
+                "checkpoint.json",
+                "evaluation.json",
+            ]
+            .contains(&name)
+            {
+                let place = path.strip_prefix(folder).unwrap().to_str().unwrap();
+                files.insert(place.to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+fn assert_same(one: &Path, other: &Path) {
+    let (one, other) = (bytes(one), bytes(other));
+    assert!(one.keys().eq(other.keys()));
+    for (name, bytes) in &one {
+        common::assert_same_bytes(bytes, &other[name], name);
+    }
+}
+
+#[test]
+fn broken_off_anywhere_and_in_any_order_it_is_the_same() {
+    let parent = tempfile::tempdir().unwrap();
+    let plan = plan(&[Base::Evolved, Base::RandomSearch, Base::HandDesigned]);
+    let whole = Study::create(plan.clone(), &parent.path().join("whole")).unwrap();
+    do_all(&whole);
+
+    let broken = Study::create(plan.clone(), &parent.path().join("broken")).unwrap();
+    for milliseconds in [0, 20, 50, 90, 140] {
+        let controls = StudyControls::default();
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                thread::sleep(Duration::from_millis(milliseconds));
+                controls.stop();
+            });
+            carry_out(
+                &broken,
+                &broken.runs(),
+                two(),
+                Keep::None,
+                &controls,
+                |_| {},
+            );
+        });
+    }
+    do_all(&broken);
+    assert_same(&whole.folder, &broken.folder);
+
+    // The arms that need the length of the evolved run come before it here.
+    let reverse = Study::create(plan, &parent.path().join("reverse")).unwrap();
+    let mut runs = reverse.runs();
+    runs.reverse();
+    let controls = StudyControls::default();
+    carry_out(&reverse, &runs, two(), Keep::None, &controls, |_| {});
+    assert_same(&whole.folder, &reverse.folder);
+    assert!(
+        status(&reverse)
+            .iter()
+            .all(|status| status.stage == Stage::Done)
+    );
+}
+
+#[test]
+fn every_arm_does_what_its_name_says() {
+    let parent = tempfile::tempdir().unwrap();
+    let study = Study::create(plan(&Base::ALL), parent.path()).unwrap();
+    do_all(&study);
+    let mut trials = BTreeMap::new();
+    for run in study.runs().into_iter().filter(|run| run.seed == 1) {
+        let base = study.arm(&run).base;
+        let folder = study.run_folder(&run);
+        let events = read_events(&folder.join("events.jsonl")).unwrap();
+        let records: Vec<_> = events
+            .into_iter()
+            .filter_map(|event| match event {
+                Event::Generation(record) => Some(record),
+                _ => None,
+            })
+            .collect();
+        // Individuals that were reproduced run half of the trials.
+        let individuals = records.iter().flat_map(|record| &record.individuals);
+        let lived: usize = individuals
+            .clone()
+            .map(|individual| {
+                if individual.origin == Origin::Reproduced {
+                    1
+                } else {
+                    2
+                }
+            })
+            .sum();
+        trials.insert(base.name(), (records.len(), lived));
+        let scenario = RunFolder::read_manifest(&folder).unwrap().scenario;
+        let complete = "(Root (Capture (FindBattery Avoid Wander) (VisibleBattery Avoid Wander \
+                        ApproachBattery Turn)) (Deliver (FindNest Avoid Wander) (VisibleNest Avoid \
+                        Wander ApproachNest Turn)))";
+        let flat = "(Root Avoid Wander ApproachBattery ApproachNest Turn)";
+        match base {
+            Base::HandDesigned => assert!(individuals.clone().all(|i| i.tree == complete)),
+            Base::Flat => assert!(individuals.clone().all(|i| i.tree == flat)),
+            Base::RandomSearch => {
+                let fresh = |o: &Origin| matches!(o, Origin::Random | Origin::Reproduced);
+                assert!(individuals.clone().all(|i| fresh(&i.origin)));
+            }
+            Base::NoLearningInheritance => {
+                for individual in individuals {
+                    if let Origin::Crossover { inherited, .. } = &individual.origin {
+                        assert!(inherited.is_empty());
+                    }
+                }
+            }
+            Base::RandomSelection => {
+                let sorted = |r: &maxq_lab::evolution::GenerationRecord| {
+                    r.individuals.is_sorted_by_key(|i| i.fitness_steps)
+                };
+                assert!(!records.iter().all(|record| sorted(record)));
+            }
+            Base::RandomChoice => {
+                assert_ne!(
+                    scenario.learning,
+                    maxq_lab::scenario::LearningModel::default()
+                );
+            }
+            Base::Evolved => {}
+        }
+    }
+    assert_eq!(trials["random_search"], trials["evolved"], "as many trials");
+    assert_eq!(
+        trials["hand_designed"].0, trials["evolved"].0,
+        "as many generations"
+    );
+    assert_eq!(trials["flat"], trials["hand_designed"]);
+}
+
+#[test]
+fn a_study_takes_no_folder_of_another_plan_and_no_run_of_another_study() {
+    let parent = tempfile::tempdir().unwrap();
+    let study = Study::create(plan(&[Base::Evolved]), parent.path()).unwrap();
+    let error = Study::create(plan(&[Base::Flat]), parent.path()).unwrap_err();
+    assert!(error.to_string().contains("another plan"), "{error}");
+    assert_eq!(Study::open(parent.path()).unwrap(), study);
+
+    let run = study.runs()[0];
+    let other = common::short(&["learning.discount=0.5"]);
+    common::run_in(&study.run_folder(&run), &other, 1, &common::threads(1));
+    fs::remove_file(study.run_folder(&run).join("summary.json")).unwrap();
+    let mut failed = Vec::new();
+    let failures = std::sync::Mutex::new(&mut failed);
+    carry_out(
+        &study,
+        &[run],
+        two(),
+        Keep::None,
+        &StudyControls::default(),
+        |happening| {
+            if let Happening::Failed { error, .. } = happening {
+                failures.lock().unwrap().push(error.to_string());
+            }
+        },
+    );
+    assert!(failed[0].contains("holds another run"), "{failed:?}");
+}
+
+#[test]
+fn the_command_does_a_plan_and_errors_say_what_is_allowed() {
+    let parent = tempfile::tempdir().unwrap();
+    let file = parent.path().join("plan.json");
+    let settings: Vec<_> = SHORT.iter().map(|setting| format!("{setting:?}")).collect();
+    let text = |name: &str| {
+        format!(
+            r#"{{"format":1,"name":"{name}","scenarios":["smoke"],"seeds":"1..2",
+                "arms":["evolved",{{"name":"short","settings":[{}]}}],
+                "reevaluation":{{"warmup":0,"trials":1,"repeats":2,"banks":1}}}}"#,
+            settings.join(",")
+        )
+    };
+    fs::write(&file, text("mine")).unwrap();
+    let out = parent.path().join("out");
+    let study = || {
+        let mut command = program();
+        command.arg("study").arg(&file).arg("--out").arg(&out);
+        command
+    };
+    let one = output(study().args(["--only", "smoke/short/seed-2"]));
+    assert!(
+        stdout(&one).starts_with("1 of 1 runs done"),
+        "{}",
+        stderr(&one)
+    );
+    let status = output(program().args(["study", "status"]).arg(&out));
+    assert!(
+        stdout(&status).starts_with("mine: 4 runs, 1 done, 3 waiting"),
+        "{}",
+        stdout(&status)
+    );
+
+    for (change, expected) in [
+        (
+            "\"evolved\"",
+            "arms[0]: found \"evoluted\"; allowed: evolved, random_selection",
+        ),
+        ("\"smoke\"", "scenarios[0]: no scenario \"smoked\""),
+        ("\"seeds\":\"1..2\"", "at seeds: found \"2..1\"; allowed"),
+    ] {
+        let wrong = expected.split('"').nth(1).unwrap_or_default();
+        let new = match change {
+            "\"seeds\":\"1..2\"" => String::from("\"seeds\":\"2..1\""),
+            _ => format!("\"{wrong}\""),
+        };
+        fs::write(&file, text("mine").replace(change, &new)).unwrap();
+        let refused = output(&mut study());
+        assert_eq!(refused.status.code(), Some(1));
+        assert!(stderr(&refused).contains(expected), "{}", stderr(&refused));
+    }
+}
