@@ -38,6 +38,8 @@ pub enum Purpose {
     Watching = 8,
     /// The noise of readings all over a policy map.
     PolicyMap = 9,
+    /// Resampling for the interval of a statistic.
+    Bootstrap = 10,
 }
 
 /// The stream for `purpose` in the given run, generation and individual.

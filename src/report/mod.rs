@@ -12,7 +12,7 @@ mod plan;
 mod plan_error;
 mod runner;
 mod single;
-mod statistics;
+pub mod statistics;
 mod status;
 mod study;
 

@@ -32,10 +32,7 @@ pub fn iqm(values: &[f64]) -> f64 {
 /// The percentile-bootstrap 95 % interval of a statistic: every stratum is resampled by
 /// itself, with replacement, [`RESAMPLES`] times. The same strata give the same bits.
 #[must_use]
-pub fn bootstrap<T: Clone>(
-    strata: &[Vec<T>],
-    statistic: impl Fn(&[Vec<T>]) -> f64,
-) -> Interval {
+pub fn bootstrap<T: Clone>(strata: &[Vec<T>], statistic: impl Fn(&[Vec<T>]) -> f64) -> Interval {
     let mut rng = stream(0, 0, 0, Purpose::Bootstrap);
     let mut room = strata.to_vec();
     let mut values: Vec<f64> = (0..RESAMPLES)
@@ -92,7 +89,9 @@ mod tests {
 
     #[test]
     fn the_interval_of_a_mean_is_that_of_scipy_and_repeats() {
-        let values = vec![12.0, 15.0, 9.0, 22.0, 30.0, 8.0, 11.0, 17.0, 25.0, 13.0, 40.0, 19.0];
+        let values = vec![
+            12.0, 15.0, 9.0, 22.0, 30.0, 8.0, 11.0, 17.0, 25.0, 13.0, 40.0, 19.0,
+        ];
         let strata = [values];
         let of_mean = |strata: &[Vec<f64>]| mean(&strata[0]);
         let found = bootstrap(&strata, of_mean);

@@ -85,9 +85,8 @@ fn ln_choose(n: u64, k: u64) -> f64 {
 pub fn fisher(a: Count, b: Count) -> f64 {
     let shown = a.shown + b.shown;
     let all = a.n + b.n;
-    let probability = |k: u64| {
-        libm::exp(ln_choose(a.n, k) + ln_choose(b.n, shown - k) - ln_choose(all, shown))
-    };
+    let probability =
+        |k: u64| libm::exp(ln_choose(a.n, k) + ln_choose(b.n, shown - k) - ln_choose(all, shown));
     let observed = probability(a.shown);
     // As probable up to rounding is as probable.
     let limit = observed * (1.0 + 1e-7);
@@ -116,7 +115,10 @@ mod tests {
         ] {
             let found = count(shown, n).interval();
             assert!((found.low - low).abs() < 1e-9, "{shown} of {n}: {found:?}");
-            assert!((found.high - high).abs() < 1e-9, "{shown} of {n}: {found:?}");
+            assert!(
+                (found.high - high).abs() < 1e-9,
+                "{shown} of {n}: {found:?}"
+            );
         }
     }
 

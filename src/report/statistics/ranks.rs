@@ -64,7 +64,10 @@ fn exact(ranks: &[usize], size: usize, observed: usize) -> f64 {
     let far = distance(observed);
     let all: f64 = ways[size].iter().sum();
     let sums = ways[size].iter().enumerate();
-    let as_far: f64 = sums.filter(|(sum, _)| distance(*sum) >= far).map(|(_, ways)| ways).sum();
+    let as_far: f64 = sums
+        .filter(|(sum, _)| distance(*sum) >= far)
+        .map(|(_, ways)| ways)
+        .sum();
     as_far / all
 }
 
@@ -113,7 +116,9 @@ mod tests {
         // scipy: method='exact' and method='asymptotic'.
         assert!((exact(&ranks, 60, observed) - 3.586_997_4e-4).abs() < 1e-9);
         assert!((approximate(&ranks, 60, observed) - 4.243_453_4e-4).abs() < 1e-9);
-        let ranks = doubled_ranks(&[4.0, 4.0, 5.0, 5.0, 5.0, 3.0, 2.0, 6.0, 4.0, 5.0, 6.0, 6.0, 7.0, 7.0, 5.0]);
+        let ranks = doubled_ranks(&[
+            4.0, 4.0, 5.0, 5.0, 5.0, 3.0, 2.0, 6.0, 4.0, 5.0, 6.0, 6.0, 7.0, 7.0, 5.0,
+        ]);
         let observed = ranks[..8].iter().sum();
         assert!((approximate(&ranks, 8, observed) - 0.049_884_436_98).abs() < 1e-9);
     }
