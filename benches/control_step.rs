@@ -11,7 +11,7 @@ use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use maxq_lab::hierarchy::parse;
-use maxq_lab::learning::{Agent, Encoder, Gate, Hierarchy, Skills, train};
+use maxq_lab::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Trainee};
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::scenario::{Scenario, WorldModel};
 use maxq_lab::worlds::World;
@@ -34,16 +34,11 @@ fn control_step(criterion: &mut Criterion) {
         let encoder = Encoder::new(world.catalogue());
         let gate = Gate::default();
         let trained = world.catalogue().primitives().map(|primitive| {
-            let mut rng = stream(1, 0, primitive.index() as u64, Purpose::PrimitiveTraining);
-            train(
-                &world,
-                &encoder,
-                &scenario.learning,
-                primitive,
-                &mut rng,
-                &gate,
-            )
-            .expect("open")
+            let rng = stream(1, 0, primitive.index() as u64, Purpose::PrimitiveTraining);
+            let learning = &scenario.learning;
+            let mut trainee = Trainee::new(&world, &encoder, learning, primitive, rng);
+            trainee.train(u32::MAX, &gate).expect("open");
+            trainee.into_skill()
         });
         let skills = Skills::new(trained.collect(), world.catalogue()).expect("complete");
         let tree = parse(COMPLETE, world.catalogue()).expect("valid");

@@ -9,7 +9,7 @@ use rand::RngExt;
 use super::breeding::{breed, random_individuals};
 use super::experiment::Experiment;
 use super::individual::{Individual, Origin};
-use super::life::{Life, Starts, is_experienced, live};
+use super::life::{Generation, Life, Living, Starts, is_experienced};
 use super::parallel::Workers;
 use super::record::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Summary, canonical, structural_difference};
@@ -115,7 +115,8 @@ impl<'e, W: World> Evolution<'e, W> {
     }
 
     /// One turn of the loop: lines 8 and 9 but before the first generation, then lines
-    /// 3 to 5. `progress` is told how many individuals have lived.
+    /// 3 to 5. `progress` is told how many lives have been lived: as many as all trials
+    /// so far make up, for all individuals come to their ends together.
     ///
     /// # Errors
     /// When the gate is stopped; then nothing has changed.
@@ -180,38 +181,40 @@ impl<'e, W: World> Evolution<'e, W> {
         progress: impl Fn(usize) + Sync,
     ) -> Result<(Vec<Life>, Skills), Stopped> {
         let starts = Starts::draw(self.experiment, self.seed, generation);
-        let lived = AtomicUsize::new(0);
-        let one = |index: usize, shared: Skills| {
-            let individual = &population[index];
-            let skills = individual.skills.clone().unwrap_or(shared);
-            let life = live(
-                self.experiment,
-                individual,
-                skills,
-                &starts,
-                self.seed,
-                generation,
-                gate,
-            )?;
-            progress(lived.fetch_add(1, Ordering::Relaxed) + 1);
-            Ok(life)
+        let trials = self.experiment.scenario.evolution.trials_per_generation;
+        // Half of the life of an experienced individual is over already.
+        let experienced = population.iter().filter(|one| is_experienced(one)).count();
+        let trials_over = AtomicUsize::new(experienced * trials / 2);
+        let trial_over = || {
+            let over = trials_over.fetch_add(1, Ordering::Relaxed) + 1;
+            if over.is_multiple_of(trials) {
+                progress(over / trials);
+            }
+        };
+        let generation = Generation {
+            experiment: self.experiment,
+            starts: &starts,
+            seed: self.seed,
+            number: generation,
+            gate,
+            trial_over: &trial_over,
         };
         if self.experiment.scenario.learning.primitive_learning == PrimitiveLearning::Shared {
             let mut skills = self.state.skills.clone();
             let mut lives = Vec::with_capacity(population.len());
-            for index in 0..population.len() {
-                let life = one(index, skills)?;
+            for individual in population {
+                let life = Living::new(generation, individual, &skills).run()?;
                 skills = life.skills.clone();
                 lives.push(life);
             }
             return Ok((lives, skills));
         }
-        // Half as many trials take half as long: start these last.
-        let mut order: Vec<_> = (0..population.len()).collect();
-        order.sort_by_key(|&index| is_experienced(&population[index]));
-        let lives = self
-            .workers
-            .map(order, |index| one(index, self.state.skills.clone()))?;
+        let born = population.iter().map(|individual| {
+            let skills = individual.skills.as_ref().unwrap_or(&self.state.skills);
+            Living::new(generation, individual, skills)
+        });
+        let lived = self.workers.finish(born.collect())?;
+        let lives = lived.into_iter().map(Living::into_life).collect();
         Ok((lives, self.state.skills.clone()))
     }
 

@@ -3,11 +3,16 @@
 use thiserror::Error;
 
 use super::parallel::Workers;
+use super::turns::Task;
 use crate::hierarchy::{self, TextError, Tree, TypingError};
-use crate::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Stopped, train};
+use crate::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Stopped, Trainee};
 use crate::random::{Purpose, stream};
 use crate::scenario::{LearningModel, Scenario};
 use crate::worlds::{Catalogue, World};
+
+/// Control steps of one turn of a primitive subtask's training: short beside the training,
+/// long beside the exchange of tasks.
+const LESSON_STEPS: u32 = 1000;
 
 /// A scenario with its world, its feature maps and its first hierarchies.
 #[derive(Clone, Debug)]
@@ -101,21 +106,37 @@ impl<W: World> Experiment<W> {
         workers: &Workers,
         gate: &Gate,
     ) -> Result<Skills, Stopped> {
-        let primitives: Vec<_> = self.catalogue().primitives().collect();
-        let skills = workers.map((0..primitives.len()).collect(), |index| {
-            let mut rng = stream(seed, bank, index as u64, Purpose::PrimitiveTraining);
+        let lessons = self.catalogue().primitives().enumerate();
+        let lessons = lessons.map(|(index, primitive)| {
+            let rng = stream(seed, bank, index as u64, Purpose::PrimitiveTraining);
             let learning = &self.scenario.learning;
-            train(
-                &self.world,
-                &self.encoder,
-                learning,
-                primitives[index],
-                &mut rng,
-                gate,
-            )
-        })?;
+            let trainee = Trainee::new(&self.world, &self.encoder, learning, primitive, rng);
+            Lesson { trainee, gate }
+        });
+        let trained = workers.finish(lessons.collect())?.into_iter();
+        let skills = trained.map(|lesson| lesson.trainee.into_skill()).collect();
         let skills = Skills::new(skills, self.catalogue());
         Ok(skills.unwrap_or_else(|| unreachable!("one skill was trained for each primitive")))
+    }
+}
+
+/// A primitive subtask that is trained in turns.
+struct Lesson<'t, W: World> {
+    trainee: Trainee<'t, W>,
+    gate: &'t Gate,
+}
+
+impl<W: World> Task for Lesson<'_, W> {
+    type Error = Stopped;
+
+    /// Control steps.
+    fn left(&self) -> Option<f64> {
+        let left = self.trainee.left();
+        (left > 0).then_some(f64::from(left))
+    }
+
+    fn turn(&mut self) -> Result<(), Stopped> {
+        self.trainee.train(LESSON_STEPS, self.gate)
     }
 }
 

@@ -5,15 +5,16 @@ use rand::seq::SliceRandom;
 use super::experiment::Experiment;
 use super::individual::{Individual, Origin};
 use super::record::TrialRecord;
-use crate::learning::{Gate, Hierarchy, Skills, Stopped};
+use super::turns::Task;
+use crate::learning::{Agent, Gate, Hierarchy, Skills, Stopped};
 use crate::random::{Purpose, Stream, stream};
 use crate::worlds::World;
 
-/// Where the trials of a generation start, the same for every individual.
+/// Where the trials of a generation start, the same for every individual: first those
+/// of the unscored half, then those of the scored one.
 #[derive(Clone, Debug)]
 pub(super) struct Starts<S> {
-    unscored: Vec<S>,
-    scored: Vec<S>,
+    all: Vec<S>,
 }
 
 impl<S> Starts<S> {
@@ -23,16 +24,15 @@ impl<S> Starts<S> {
         generation: u64,
     ) -> Self {
         let mut rng = stream(seed, generation, 0, Purpose::StartPoses);
-        let half = experiment.scenario.evolution.trials_per_generation / 2;
-        let mut draw = || {
-            (0..half)
-                .map(|_| experiment.world.draw_start(&mut rng))
-                .collect()
-        };
+        let trials = experiment.scenario.evolution.trials_per_generation;
+        let draws = (0..trials).map(|_| experiment.world.draw_start(&mut rng));
         Self {
-            unscored: draw(),
-            scored: draw(),
+            all: draws.collect(),
         }
+    }
+
+    fn half(&self) -> usize {
+        self.all.len() / 2
     }
 }
 
@@ -62,48 +62,150 @@ pub(super) fn is_experienced(individual: &Individual) -> bool {
     individual.origin == Origin::Reproduced
 }
 
-/// Lets an individual live through a generation (Algorithm 3.1, line 3): each half of
-/// the trials in an order of its own, reproduced ones only the scored half.
-pub(super) fn live<W: World>(
-    experiment: &Experiment<W>,
-    individual: &Individual,
-    skills: Skills,
-    starts: &Starts<W::Start>,
-    seed: u64,
-    generation: u64,
-    gate: &Gate,
-) -> Result<Life, Stopped> {
-    let limit = experiment.scenario.evolution.trial_step_limit;
-    let mut rng = stream(seed, generation, individual.id, Purpose::Life);
-    let mut agent = experiment.agent(individual.hierarchy.clone(), skills);
-    let mut half = |starts: &[W::Start]| -> Result<Vec<TrialRecord>, Stopped> {
-        let order = shuffled(starts.len(), &mut rng);
-        let trials = order.into_iter().map(|index| {
-            let trial = agent.run_trial(&starts[index], limit, &mut rng, gate)?;
-            Ok(TrialRecord {
+/// An individual that lives through a generation, trial by trial (Algorithm 3.1, line 3):
+/// each half of the trials in an order of its own, an experienced one only the scored half.
+pub(super) struct Living<'g, W: World> {
+    generation: Generation<'g, W>,
+    individual: &'g Individual,
+    skills: &'g Skills,
+    /// Made when the first trial begins, by the thread that runs it.
+    agent: Option<Agent<'g, W>>,
+    rng: Stream,
+    first: usize,
+    next: usize,
+    /// The half under way, in the order of its trials.
+    order: Vec<usize>,
+    scored: Vec<TrialRecord>,
+    control_steps: u64,
+}
+
+/// What all individuals of a generation share.
+pub(super) struct Generation<'g, W: World> {
+    pub(super) experiment: &'g Experiment<W>,
+    pub(super) starts: &'g Starts<W::Start>,
+    pub(super) seed: u64,
+    pub(super) number: u64,
+    pub(super) gate: &'g Gate,
+    /// Is told of every trial that is over.
+    pub(super) trial_over: &'g (dyn Fn() + Sync),
+}
+
+impl<W: World> Clone for Generation<'_, W> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<W: World> Copy for Generation<'_, W> {}
+
+impl<'g, W: World> Living<'g, W> {
+    pub(super) fn new(
+        generation: Generation<'g, W>,
+        individual: &'g Individual,
+        skills: &'g Skills,
+    ) -> Self {
+        let Generation {
+            starts,
+            seed,
+            number,
+            ..
+        } = generation;
+        let first = match is_experienced(individual) {
+            true => starts.half(),
+            false => 0,
+        };
+        Self {
+            generation,
+            individual,
+            skills,
+            agent: None,
+            rng: stream(seed, number, individual.id, Purpose::Life),
+            first,
+            next: first,
+            order: Vec::new(),
+            scored: Vec::new(),
+            control_steps: 0,
+        }
+    }
+
+    /// Runs the trials that are left.
+    pub(super) fn run(mut self) -> Result<Life, Stopped> {
+        while self.left().is_some() {
+            self.turn()?;
+        }
+        Ok(self.into_life())
+    }
+
+    pub(super) fn into_life(mut self) -> Life {
+        let agent = self.agent.take().unwrap_or_else(|| self.newborn());
+        let (hierarchy, skills) = agent.into_parts();
+        Life {
+            hierarchy,
+            skills,
+            scored: self.scored,
+            control_steps: self.control_steps,
+        }
+    }
+
+    fn newborn(&self) -> Agent<'g, W> {
+        let hierarchy = self.individual.hierarchy.clone();
+        let experiment = self.generation.experiment;
+        experiment.agent(hierarchy, self.skills.clone())
+    }
+}
+
+impl<W: World> Task for Living<'_, W> {
+    type Error = Stopped;
+
+    /// Control steps, if the trials to come are as long as those that were.
+    fn left(&self) -> Option<f64> {
+        let to_come = self.generation.starts.all.len() - self.next;
+        let step_limit = self
+            .generation
+            .experiment
+            .scenario
+            .evolution
+            .trial_step_limit;
+        let mean = match self.next - self.first {
+            0 => f64::from(step_limit),
+            over => self.control_steps as f64 / over as f64,
+        };
+        (to_come > 0).then_some(to_come as f64 * mean)
+    }
+
+    /// One trial.
+    fn turn(&mut self) -> Result<(), Stopped> {
+        let Generation {
+            experiment,
+            starts,
+            gate,
+            trial_over,
+            ..
+        } = self.generation;
+        let half = starts.half();
+        let (half_start, is_scored) = match self.next < half {
+            true => (0, false),
+            false => (half, true),
+        };
+        if self.next == half_start {
+            self.order = shuffled(half, &mut self.rng);
+        }
+        let start = &starts.all[half_start + self.order[self.next - half_start]];
+        let limit = experiment.scenario.evolution.trial_step_limit;
+        let mut agent = self.agent.take().unwrap_or_else(|| self.newborn());
+        let trial = agent.run_trial(start, limit, &mut self.rng, gate)?;
+        self.agent = Some(agent);
+        self.control_steps += u64::from(trial.steps);
+        if is_scored {
+            self.scored.push(TrialRecord {
                 steps: trial.steps,
                 delivered: trial.done,
-            })
-        });
-        trials.collect()
-    };
-    let unscored = match is_experienced(individual) {
-        true => Vec::new(),
-        false => half(&starts.unscored)?,
-    };
-    let scored = half(&starts.scored)?;
-    let control_steps = unscored
-        .iter()
-        .chain(&scored)
-        .map(|trial| u64::from(trial.steps))
-        .sum();
-    let (hierarchy, skills) = agent.into_parts();
-    Ok(Life {
-        hierarchy,
-        skills,
-        scored,
-        control_steps,
-    })
+            });
+        }
+        self.next += 1;
+        trial_over();
+        Ok(())
+    }
 }
 
 fn shuffled(count: usize, rng: &mut Stream) -> Vec<usize> {

@@ -8,6 +8,7 @@ mod individual;
 mod life;
 mod parallel;
 mod record;
+mod turns;
 
 pub use crossover::crossover;
 pub use evolve::{Evolution, State};

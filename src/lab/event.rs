@@ -37,7 +37,8 @@ pub enum Event {
     Progress {
         /// The generation under way; 0 while primitive subtasks are trained.
         generation: u64,
-        /// Individuals that have lived.
+        /// Lives lived, of all individuals together: they come to their ends at the same
+        /// time, so that no thread waits.
         lived: usize,
         /// Individuals in the population.
         population: usize,

@@ -33,5 +33,5 @@ pub use observe::{Observer, Update};
 pub use policy::{PolicySamples, SelectionProbabilities, average};
 pub use selection::{Rule, Softmax};
 pub use skills::{Skill, Skills};
-pub use training::train;
+pub use training::Trainee;
 pub use verdict::Policy;

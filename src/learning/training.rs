@@ -2,15 +2,16 @@
 
 use rand::RngExt;
 
-use super::features::Encoder;
+use super::features::{Encoder, Features};
 use super::gate::{Gate, Stopped};
+use super::linear::Row;
 use super::selection::{Softmax, uniform};
 use super::skills::Skill;
 use crate::random::Stream;
-use crate::scenario::{Exploration, LearningModel};
+use crate::scenario::{Exploration, LearningModel, TrainingModel};
 use crate::worlds::{SubtaskId, World};
 
-/// Trains one primitive subtask, alone, by Thesis Eq. 3.6: the value of an action is
+/// One primitive subtask in training, alone, by Thesis Eq. 3.6: the value of an action is
 /// the reward of the next step, without prediction.
 ///
 /// An episode starts where the world lets the subtask be trained and ends after its
@@ -19,55 +20,105 @@ use crate::worlds::{SubtaskId, World};
 /// cold before rare inputs, such as targets at the edge of the view, were seen.
 ///
 /// Where the world has no training for it, the subtask has learned nothing.
-///
-/// # Errors
-/// When the gate is stopped.
-pub fn train<W: World>(
-    world: &W,
-    encoder: &Encoder,
-    model: &LearningModel,
-    primitive: SubtaskId,
-    rng: &mut Stream,
-    gate: &Gate,
-) -> Result<Skill, Stopped> {
-    let catalogue = world.catalogue();
-    let map = catalogue.subtask(primitive).map;
-    let actions = catalogue.subtask(primitive).actions();
-    let untrained = Skill::new(primitive, catalogue, model.initial_parameter as f32);
-    let Some(training) = world.training(primitive) else {
-        return Ok(untrained);
-    };
-    let softmax = Softmax::new(model);
-    let limit = model.temperature_limit as f32;
-    let mut temperature = model.initial_temperature as f32;
-    let mut skill = untrained;
-    let mut features = encoder.features();
-    let mut room = skill.values();
-    let mut steps = 0;
-    while steps < training.steps {
-        let begun = steps;
-        let Some(mut state) = world.begin_training(primitive, rng) else {
-            return Ok(skill);
+#[derive(Debug)]
+pub struct Trainee<'t, W: World> {
+    world: &'t W,
+    encoder: &'t Encoder,
+    model: &'t LearningModel,
+    softmax: Softmax,
+    skill: Skill,
+    rng: Stream,
+    temperature: f32,
+    /// Control steps to come.
+    left: u32,
+    features: Features,
+    room: Vec<Row>,
+}
+
+impl<'t, W: World> Trainee<'t, W> {
+    /// A primitive subtask that has learned nothing yet.
+    #[must_use]
+    pub fn new(
+        world: &'t W,
+        encoder: &'t Encoder,
+        model: &'t LearningModel,
+        primitive: SubtaskId,
+        rng: Stream,
+    ) -> Self {
+        let initial = model.initial_parameter as f32;
+        let skill = Skill::new(primitive, world.catalogue(), initial);
+        Self {
+            world,
+            encoder,
+            model,
+            softmax: Softmax::new(model),
+            rng,
+            temperature: model.initial_temperature as f32,
+            left: world
+                .training(primitive)
+                .map_or(0, |training| training.steps),
+            features: encoder.features(),
+            room: skill.values(),
+            skill,
+        }
+    }
+
+    /// Control steps to come.
+    #[must_use]
+    pub fn left(&self) -> u32 {
+        self.left
+    }
+
+    /// Trains for about `steps` control steps: to the end of the episode in which they
+    /// are done.
+    ///
+    /// # Errors
+    /// When the gate is stopped.
+    pub fn train(&mut self, steps: u32, gate: &Gate) -> Result<(), Stopped> {
+        let end = self.left.saturating_sub(steps);
+        let Some(training) = self.world.training(self.skill.subtask) else {
+            return Ok(());
         };
-        for _ in 0..training.episode_steps.min(training.steps - steps) {
-            features.load(world.percept(&state).as_ref());
-            let features = encoder.encode(map, &mut features);
-            let values = skill.evaluate(features, &mut room);
+        while self.left > end {
+            let begun = self.left;
+            match self.world.begin_training(self.skill.subtask, &mut self.rng) {
+                Some(state) => self.episode(state, training),
+                None => self.left = 0,
+            }
+            gate.pass(begun - self.left)?;
+            let cooled = self.temperature * training.temperature_decrease as f32;
+            self.temperature = cooled.max(self.model.temperature_limit as f32);
+        }
+        Ok(())
+    }
+
+    /// The subtask with what it has learned.
+    #[must_use]
+    pub fn into_skill(self) -> Skill {
+        self.skill
+    }
+
+    fn episode(&mut self, mut state: W::State, training: &TrainingModel) {
+        let subtask = self.skill.subtask;
+        let actions = self.world.catalogue().subtask(subtask).actions();
+        for _ in 0..training.episode_steps.min(self.left) {
+            self.features.load(self.world.percept(&state).as_ref());
+            let features = self.encoder.encode(self.skill.map, &mut self.features);
+            let values = self.skill.evaluate(features, &mut self.room);
+            let rng = &mut self.rng;
             let action = match training.exploration {
                 Exploration::Uniform => uniform(rng.random(), actions),
-                Exploration::Softmax => softmax.choose(values, temperature, rng),
+                Exploration::Softmax => self.softmax.choose(values, self.temperature, rng),
             };
             let before = state.clone();
-            let reward = world.step(&mut state, primitive, action, rng);
+            let reward = self.world.step(&mut state, subtask, action, rng);
             let error = reward - values[action];
-            skill.learn(action, features, model.learning_rate as f32 * error);
-            steps += 1;
-            if !world.training_goes_on(primitive, &before, &mut state) {
+            let step = self.model.learning_rate as f32 * error;
+            self.skill.learn(action, features, step);
+            self.left -= 1;
+            if !self.world.training_goes_on(subtask, &before, &mut state) {
                 break;
             }
         }
-        gate.pass(steps - begun)?;
-        temperature = (temperature * training.temperature_decrease as f32).max(limit);
     }
-    Ok(skill)
 }
