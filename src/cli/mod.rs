@@ -4,8 +4,10 @@
 //! standard error, progress only where that is a terminal.
 
 mod answer;
+mod appearance;
 mod check;
 mod evaluate;
+mod frame;
 mod manual;
 mod output;
 mod primitives;
@@ -50,6 +52,7 @@ Begin with:
 enum Command {
     Run(run::Args),
     Resume(resume::Args),
+    Frame(frame::Args),
     Evaluate(evaluate::Args),
     Study(Box<study::Args>),
     #[command(subcommand)]
@@ -72,6 +75,7 @@ pub fn main() -> ExitCode {
     let done = match command {
         Command::Run(args) => run::main(args),
         Command::Resume(args) => resume::main(&args),
+        Command::Frame(args) => frame::main(&args),
         Command::Evaluate(args) => evaluate::main(args),
         Command::Study(args) => study::main(&args),
         Command::Tree(command) => tree::main(command),

@@ -97,7 +97,11 @@ impl App {
                 self.dirty = true;
                 self.desk.size = (columns, rows);
             }
-            Input::Event(event) => self.event(*event),
+            // Events may come in hundreds at once; what follows from them waits for the tick.
+            Input::Event(event) => {
+                self.event(*event);
+                return effects;
+            }
             Input::Closed => {
                 self.dirty = true;
                 self.desk.closed = true;
@@ -374,11 +378,16 @@ impl App {
     }
 
     /// The frame as it would be on a terminal of the present size.
-    fn rendered(&self, format: export::FrameFormat) -> String {
+    #[must_use]
+    pub fn frame(&self) -> Buffer {
         let (width, height) = self.desk.size;
         let mut buffer = Buffer::empty(Rect::new(0, 0, width, height));
         self.draw_on(&mut buffer);
-        export::render(&buffer, format)
+        buffer
+    }
+
+    fn rendered(&self, format: export::FrameFormat) -> String {
+        export::render(&self.frame(), format)
     }
 
     /// Draws everything.

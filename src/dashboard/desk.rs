@@ -312,7 +312,10 @@ impl Desk {
 
     /// Whether evolution chooses what is on the stage.
     pub(super) fn follows(&self) -> bool {
-        self.chosen == Chosen::Best && self.time == Time::Latest && !self.frozen()
+        self.mode != Mode::Replay
+            && self.chosen == Chosen::Best
+            && self.time == Time::Latest
+            && !self.frozen()
     }
 
     /// Says something to the person.

@@ -34,6 +34,7 @@ mod model;
 mod overlay;
 mod pace;
 mod panel;
+mod sight;
 mod stage;
 pub mod views;
 

@@ -1,43 +1,69 @@
 //! The arena.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Rect};
+use ratatui::style::Style;
 
 use super::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Canvas, Layer, Paint, put};
-use crate::worlds::scene::{Mark, Role};
+use crate::dashboard::look::{Canvas, Layer, Look, Paint, fitted, put};
+use crate::dashboard::sight::Sight;
+use crate::worlds::scene::{Mark, Role, Scenery, Snapshot};
 
 /// A rollout of the selected individual.
 ///
 /// ```text
-///  ╭ Arena ────────────╮
-///  │ ⡏⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⢹ │
-///  │ ⡇   ▮      ⡇    ⢸ │   walls, batteries ▮, the nest ⌂
-///  │ ⡇  ↗·      ⡇ ⌂  ⢸ │   the robot, its heading and trail
-///  │ ⣇⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣸ │
-///  ╰───────────────────╯
+///  ╭ Arena  individual 27, 10x ─╮
+///  │ ⡏⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⢹          │
+///  │ ⡇   ▮      ⡇    ⢸          │   walls, batteries ▮, the nest ⌂; the robot,
+///  │ ⡇  ↗·      ⡇ ⌂  ⢸          │   its heading, trail, rays and field of view
+///  │ ⣇⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣸          │
+///  │ step 41  2 a battery visible│   time step, state type; how trials ended
+///  ╰─────────────────────────────╯
 /// ```
 pub(super) struct Arena;
 
+/// Rows below the arena.
+const FOOT: u16 = 2;
+
 impl View for Arena {
+    fn caption(&self, desk: &Desk) -> String {
+        let stage = &desk.stage;
+        let Some(subject) = stage.subject() else {
+            return String::new();
+        };
+        let speed = match stage.halted() {
+            true => String::from("halted"),
+            false => format!("{}x", stage.speed()),
+        };
+        let separator = desk.look.signs.separator;
+        let (id, generation) = (subject.id, subject.generation);
+        format!("{speed} {separator} individual {id} of generation {generation}")
+    }
+
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+        let foot = FOOT.min(area.height / 4);
+        let above = Rect {
+            height: area.height - foot,
+            ..area
+        };
         let scenery = desk.scenery();
-        let place = square(area, scenery.extent);
-        let mut canvas = Canvas::new(&desk.look, place, [0.0, 0.0], scenery.extent);
-        for [from, to] in &scenery.walls {
-            canvas.line(*from, *to, Layer::Wall, Paint::Wall);
-        }
-        canvas.finish(buffer);
-        for mark in &scenery.places {
-            draw_mark(desk, &canvas, mark, place, buffer);
-        }
+        let place = in_proportion(above, scenery.extent);
+        let snapshot = desk.stage.rollout().map(|rollout| rollout.snapshot());
+        draw_scene(desk, scenery, snapshot.as_ref(), place, buffer);
+        let below = Rect {
+            y: area.y + above.height,
+            height: foot,
+            ..area
+        };
+        draw_foot(desk, snapshot.as_ref(), below, buffer);
     }
 
     fn hints(&self) -> &'static [Action] {
         &[
             Action::Halt,
+            Action::StepRollout,
             Action::Faster,
             Action::Slower,
             Action::Restart,
@@ -45,32 +71,194 @@ impl View for Arena {
     }
 
     fn lesson(&self) -> &'static str {
-        "The world with its walls. A rollout shows the selected individual at work."
+        "A rollout: a copy of the individual acts and learns in the arena, trial after trial, as\n\
+         in its generation; evolution knows nothing of it. Shaded is what the robot sees, fine\n\
+         lines are its proximity rays. A carried battery is gone from the arena. The state type\n\
+         says which subtasks can be active (Thesis Table 4.1). 1x is the robot's own time."
     }
 }
 
-fn draw_mark(desk: &Desk, canvas: &Canvas<'_>, mark: &Mark, area: Rect, buffer: &mut Buffer) {
-    let signs = desk.look.signs;
+/// The largest area in the middle that shows the extent in its true proportions, cells
+/// being about twice as high as wide.
+pub(in crate::dashboard) fn in_proportion(area: Rect, extent: [f64; 2]) -> Rect {
+    let ratio = 2.0 * extent[0] / extent[1];
+    let (width, height) = (f64::from(area.width), f64::from(area.height));
+    let height = height.min(width / ratio);
+    let width = width.min(height * ratio);
+    area.centered(
+        Constraint::Length(width.round() as u16),
+        Constraint::Length(height.round() as u16),
+    )
+}
+
+/// Draws the world and, if there is one, the agent in it.
+fn draw_scene(
+    desk: &Desk,
+    scenery: &Scenery,
+    snapshot: Option<&Snapshot>,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let look = &desk.look;
+    let mut canvas = Canvas::new(look, area, [0.0, 0.0], scenery.extent);
+    if let Some(snapshot) = snapshot {
+        shade_sight(look, &canvas, scenery, snapshot, area, buffer);
+        if let Some(rollout) = desk.stage.rollout() {
+            let trail = &rollout.status().trail;
+            for (from, to) in trail.iter().zip(trail.iter().skip(1)) {
+                canvas.line(*from, *to, Layer::Trail, Paint::Trail);
+            }
+        }
+        for [from, to] in &snapshot.rays {
+            canvas.line(*from, *to, Layer::Ray, Paint::Ray);
+        }
+    }
+    for [from, to] in &scenery.walls {
+        canvas.line(*from, *to, Layer::Wall, Paint::Wall);
+    }
+    canvas.finish(buffer);
+    let moving = snapshot.map_or(&[][..], |snapshot| &snapshot.marks);
+    for mark in scenery.places.iter().chain(moving) {
+        draw_mark(look, &canvas, mark, area, buffer);
+    }
+    if let Some(snapshot) = snapshot {
+        draw_agent(look, &canvas, snapshot, area, buffer);
+    }
+}
+
+/// Shades what the agent sees, behind everything else.
+fn shade_sight(
+    look: &Look,
+    canvas: &Canvas<'_>,
+    scenery: &Scenery,
+    snapshot: &Snapshot,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let Some(sight) = Sight::of(snapshot, scenery) else {
+        return;
+    };
+    let style = look.style(Paint::Sight);
+    let coloured = style.bg.is_some();
+    for row in 0..area.height {
+        for column in 0..area.width {
+            if !sight.sees(canvas.place(column, row)) {
+                continue;
+            }
+            if coloured {
+                let cell = Rect::new(area.x + column, area.y + row, 1, 1);
+                buffer.set_style(cell.intersection(buffer.area), style);
+            } else if (column + 2 * row) % 4 == 0 {
+                put(buffer, area, (column, row), look.signs.sight, style);
+            }
+        }
+    }
+}
+
+fn draw_mark(look: &Look, canvas: &Canvas<'_>, mark: &Mark, area: Rect, buffer: &mut Buffer) {
+    let signs = look.signs;
     let (sign, paint) = match mark.role {
         Role::Goal => (signs.goal, Paint::Goal),
         Role::Object => (signs.object, Paint::Object),
         Role::Hazard => (signs.hazard, Paint::Hazard),
         Role::Landmark => (mark.label.as_str(), Paint::Landmark),
     };
-    if let Some(cell) = canvas.cell(mark.at) {
-        put(buffer, area, cell, sign, desk.look.style(paint));
+    put_at(look, canvas, mark.at, (sign, paint), area, buffer);
+}
+
+fn draw_agent(
+    look: &Look,
+    canvas: &Canvas<'_>,
+    snapshot: &Snapshot,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let signs = look.signs;
+    let sign = match snapshot.heading {
+        Some(heading) => {
+            let eighth = (heading / std::f64::consts::FRAC_PI_4)
+                .round()
+                .rem_euclid(8.0);
+            signs.headings[eighth as usize % 8]
+        }
+        None => signs.agent,
+    };
+    // A robot that carries something looks like what it carries.
+    let paint = match snapshot.carries {
+        Some(_) => Paint::Object,
+        None => Paint::Agent,
+    };
+    put_at(look, canvas, snapshot.at, (sign, paint), area, buffer);
+}
+
+/// Writes a sign at a place, over what is there.
+fn put_at(
+    look: &Look,
+    canvas: &Canvas<'_>,
+    at: [f64; 2],
+    (sign, paint): (&str, Paint),
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let Some((column, row)) = canvas.cell(at) else {
+        return;
+    };
+    let cell = Rect::new(area.x + column, area.y + row, 1, 1).intersection(buffer.area);
+    let background = buffer
+        .cell((cell.x, cell.y))
+        .map_or_else(Style::new, |cell| Style::new().bg(cell.bg));
+    for position in cell.positions() {
+        buffer[position].reset();
+    }
+    put(
+        buffer,
+        area,
+        (column, row),
+        sign,
+        background.patch(look.style(paint)),
+    );
+}
+
+/// Time step, state type, and how the latest trials ended.
+fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut Buffer) {
+    let look = &desk.look;
+    let (Some(rollout), Some(snapshot)) = (desk.stage.rollout(), snapshot) else {
+        let why = match desk.stage.refused() {
+            Some(why) => why,
+            None if desk.shown().is_none() => "no individual has lived yet",
+            None => "the individual is being fetched",
+        };
+        let text = fitted(why, usize::from(area.width), look.signs);
+        put(buffer, area, (0, 0), &text, look.style(Paint::Dim));
+        return;
+    };
+    let status = rollout.status();
+    let step = format!("trial {} step {:<4} ", status.trial, status.steps);
+    let column = put(buffer, area, (0, 0), &step, look.style(Paint::Text));
+    let (text, paint) = match status.ended {
+        Some(record) if record.delivered => (String::from("done"), Paint::Good),
+        Some(_) => (String::from("gave up at the limit"), Paint::Bad),
+        None => (state_type(desk, snapshot), Paint::Notice),
+    };
+    let room = usize::from(area.width.saturating_sub(column));
+    let text = fitted(&text, room, look.signs);
+    put(buffer, area, (column, 0), &text, look.style(paint));
+    let mut column = put(buffer, area, (0, 1), "trials ", look.style(Paint::Dim));
+    for record in status.history.iter().rev() {
+        let (text, paint) = match record.delivered {
+            true => (format!("{} ", record.steps), Paint::Text),
+            false => (format!("{}! ", record.steps), Paint::Bad),
+        };
+        column = put(buffer, area, (column, 1), &text, look.style(paint));
     }
 }
 
-/// The largest area in the middle that shows the extent in its true proportions, cells
-/// being about twice as high as wide.
-fn square(area: Rect, extent: [f64; 2]) -> Rect {
-    let ratio = 2.0 * extent[0] / extent[1];
-    let (width, height) = (f64::from(area.width), f64::from(area.height));
-    let height = height.min(width / ratio);
-    let width = width.min(height * ratio);
-    area.centered(
-        ratatui::layout::Constraint::Length(width.round() as u16),
-        ratatui::layout::Constraint::Length(height.round() as u16),
-    )
+/// The state type's number and what is the case in it.
+fn state_type(desk: &Desk, snapshot: &Snapshot) -> String {
+    let number = snapshot.state_type.number();
+    let types = &desk.catalogue().state_types;
+    match types.get(number - 1) {
+        Some(info) => format!("{number} {}", info.description),
+        None => String::from("done"),
+    }
 }

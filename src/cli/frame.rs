@@ -1,0 +1,145 @@
+//! `maxq-lab frame`: one frame of the dashboard.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::time::Duration;
+
+use super::appearance::Appearance;
+use super::output::{self, Done};
+use crate::dashboard::keys::Key;
+use crate::dashboard::{App, Effect, FrameFormat, Input, Mode, ViewId, render};
+use crate::lab::Recording;
+use crate::lab::specimen::{Archive, bench};
+
+/// Print one frame of the dashboard over a recorded run.
+///
+/// For papers, bug reports and tests. The frame is what the dashboard shows after the given
+/// time and keys: the same arguments give the same frame.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab frame runs/environment-1-seed1
+  maxq-lab frame runs/environment-1-seed1 --view fitness --format svg > fitness.svg
+  maxq-lab frame runs/environment-1-seed1 --generation 3 --play 2 --size 200x60 --keys 'tab tab enter'")]
+pub(super) struct Args {
+    /// The run folder.
+    folder: PathBuf,
+
+    /// Columns and rows.
+    #[arg(long, value_name = "WxH", default_value = "120x40")]
+    size: Size,
+
+    /// The view.
+    #[arg(long, value_name = "V", default_value = "overview")]
+    view: ViewId,
+
+    /// The generation to look at [default: the last].
+    #[arg(long, value_name = "N")]
+    generation: Option<u64>,
+
+    /// Seconds that the rollout plays before the frame is taken.
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    play: f64,
+
+    /// Keys that are pressed then, by their names, with spaces between.
+    #[arg(long, default_value = "")]
+    keys: String,
+
+    /// How to write it.
+    #[arg(long, value_name = "text|ansi|svg", default_value = "text")]
+    format: FrameFormat,
+
+    #[command(flatten)]
+    appearance: Appearance,
+}
+
+/// Columns and rows of a frame.
+#[derive(Clone, Copy, Debug)]
+struct Size(u16, u16);
+
+/// Most columns and rows of a frame.
+const MOST: u16 = 1000;
+/// Longest time that a rollout plays, in seconds.
+const LONGEST: f64 = 3600.0;
+/// Time between two frames of the dashboard.
+const TICK: Duration = Duration::from_millis(100);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.parse().ok().filter(|n| (1..=MOST).contains(n));
+        let numbers = text.split_once('x');
+        let size = numbers.and_then(|(w, h)| Some(Self(number(w)?, number(h)?)));
+        size.ok_or_else(|| {
+            format!("found {text:?}; allowed: COLUMNSxROWS, each from 1 to {MOST}, such as 80x24")
+        })
+    }
+}
+
+/// Carries out the command.
+pub(super) fn main(args: &Args) -> Done {
+    if !(0.0..=LONGEST).contains(&args.play) {
+        let message = format!(
+            "--play: found {}; allowed: 0 to {LONGEST} seconds",
+            args.play
+        );
+        return Err(message.into());
+    }
+    let keys: Result<Vec<Key>, _> = args.keys.split_ascii_whitespace().map(str::parse).collect();
+    let keys = keys.map_err(|error| format!("--keys: {error}"))?;
+    let (look, key_map) = args.appearance.load()?;
+    let recording = Recording::read(&args.folder)?;
+    let manifest = recording.manifest;
+    let bench = bench(manifest.scenario, manifest.seed)?;
+    let folder = args.folder.display().to_string();
+    let mut still = Still {
+        app: App::new(bench, folder, Mode::Replay, look, key_map),
+        archive: Archive::new(bench, &args.folder, None),
+    };
+    let Size(columns, rows) = args.size;
+    still.update(Input::Resize(columns, rows));
+    for event in recording.events {
+        still.update(Input::Event(Box::new(event)));
+    }
+    let effects = still.app.open(args.view);
+    still.carry_out(effects);
+    if let Some(generation) = args.generation {
+        let effects = still.app.travel_to(generation);
+        still.carry_out(effects);
+    }
+    for _ in 0..(args.play / TICK.as_secs_f64()).round() as u64 {
+        still.update(Input::Tick(TICK));
+    }
+    for key in keys {
+        still.update(Input::Key(key));
+    }
+    let frame = render(&still.app.frame(), args.format);
+    output::raw(frame.as_bytes())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A dashboard without a terminal.
+struct Still {
+    app: App,
+    archive: Archive,
+}
+
+impl Still {
+    fn update(&mut self, input: Input) {
+        let effects = self.app.update(input);
+        self.carry_out(effects);
+    }
+
+    /// Fetches populations; a recorded run cannot be steered, and nothing is written.
+    fn carry_out(&mut self, effects: Vec<Effect>) {
+        for effect in effects {
+            if let Effect::Load { generation } = effect {
+                let state = self.archive.generation(generation);
+                let state = state.map_err(|error| error.to_string());
+                self.update(Input::Population { generation, state });
+            }
+        }
+    }
+}
