@@ -32,6 +32,7 @@ const COMMANDS: &[&[&str]] = &[
     &["evaluate"],
     &["study"],
     &["study", "status"],
+    &["study", "report"],
     &["tree"],
     &["tree", "show"],
     &["tree", "check"],

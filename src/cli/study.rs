@@ -15,7 +15,7 @@ use super::signals::Caught;
 use crate::lab::Keep;
 use crate::report::{
     Arm, Base, Happening, Numbers, Pace, Plan, RunId, RunStatus, Stage, Study, StudyControls,
-    carry_out, status,
+    carry_out, status, write_report,
 };
 
 /// Do many runs: scenarios, arms and seeds of a plan.
@@ -119,6 +119,7 @@ impl What {
 #[derive(Debug, Subcommand)]
 enum Command {
     Status(StatusArgs),
+    Report(ReportArgs),
 }
 
 /// Tell how far the runs of a study are.
@@ -132,10 +133,25 @@ struct StatusArgs {
     format: Format,
 }
 
+/// Say what comes out: statistics, claims with verdicts, figures.
+///
+/// Writes DIR/report: report.md, report.json, tables as CSV, figures as SVG; prints the
+/// report. It is made of the runs that are done, at any time.
+#[derive(Debug, clap::Args)]
+struct ReportArgs {
+    /// The folder of the study.
+    dir: PathBuf,
+
+    /// How to print it.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
 /// Carries out the command.
 pub(super) fn main(args: &Args) -> Done {
     match &args.command {
         Some(Command::Status(args)) => show_status(args),
+        Some(Command::Report(args)) => report(args),
         None => do_runs(args),
     }
 }
@@ -252,6 +268,21 @@ impl<'s> Show<'s> {
             .unwrap_or_else(PoisonError::into_inner)
             .failed
     }
+}
+
+fn report(args: &ReportArgs) -> Done {
+    let written = write_report(&Study::open(&args.dir)?)?;
+    match args.format {
+        Format::Json => output::json(&written.findings)?,
+        Format::Text => output::text(&written.text)?,
+    }
+    let folder = args.dir.join("report");
+    output::message(&format!(
+        "{} files in {}",
+        written.files.len(),
+        folder.display()
+    ));
+    Ok(ExitCode::SUCCESS)
 }
 
 fn show_status(args: &StatusArgs) -> Done {

@@ -6,22 +6,38 @@
 //! comes out the same.
 
 mod arm;
+mod claims;
+mod document;
+mod facts;
+mod findings;
+mod metrics;
 mod numbers;
 mod pace;
 mod plan;
 mod plan_error;
+mod provenance;
 mod runner;
 mod single;
 pub mod statistics;
 mod status;
 mod study;
+mod table;
+mod tables;
+mod winner;
+mod write;
 
 pub use arm::{Arm, Base};
+pub use claims::{CLAIMS, Claim, Evidence, Scope, Verdict, judge};
+pub use facts::{Facts, FreshFacts, Moment, Winner};
+pub use findings::{Comparison, Counted, Findings, Judged, Kind, Summary};
 pub use numbers::Numbers;
 pub use pace::Pace;
 pub use plan::{MAX_PLAN_BYTES, PLAN_FORMAT, Plan, Reevaluation};
 pub use plan_error::PlanError;
+pub use provenance::Provenance;
 pub use runner::{Happening, StudyControls, carry_out};
 pub use single::{Fresh, Single, SingleError};
 pub use status::{RunStatus, Stage, status};
 pub use study::{RunId, Study, StudyError};
+pub use table::Table;
+pub use write::{ReportError, Written, write_report};

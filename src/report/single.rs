@@ -13,8 +13,8 @@ use super::study::{RunId, Study};
 use crate::evolution::{Evolution, Experiment, TreeError, Workers, read_tree};
 use crate::files::{ReadError, read_text, write_atomically};
 use crate::lab::{
-    Evaluation, FolderError, Keep, Outcome, Protocol, RunError, RunFolder, RunOptions, SetupError,
-    WorldTask, evaluate, resume, start, with_world,
+    Evaluation, FolderError, Keep, Manifest, Outcome, Protocol, RunError, RunFolder, RunOptions,
+    SetupError, WorldTask, evaluate, resume, start, with_world,
 };
 use crate::learning::{Gate, Stopped};
 use crate::scenario::Scenario;
@@ -141,7 +141,7 @@ impl Single<'_> {
         let run = match folder.join("run.json").is_file() {
             false => start(self.with_budget(scenario)?, self.run.seed, folder, &options)?,
             true => {
-                self.check_origin(folder, scenario)?;
+                check_origin(self.study, &self.run, scenario)?;
                 resume(folder, None, &options)?
             }
         };
@@ -149,22 +149,6 @@ impl Single<'_> {
         match outcome.stopped {
             true => Err(Stopped.into()),
             false => Ok(()),
-        }
-    }
-
-    /// What is in the folder is this run; only its budget may be another.
-    fn check_origin(&self, folder: &Path, expected: &Scenario) -> Result<(), SingleError> {
-        let manifest = RunFolder::read_manifest(folder)?;
-        let mut found = manifest.scenario;
-        if self.study.arm(&self.run).base.is_matched() {
-            found.evolution.generation_limit = expected.evolution.generation_limit;
-        }
-        match found == *expected && manifest.seed == self.run.seed {
-            true => Ok(()),
-            false => Err(SingleError::Another {
-                path: folder.join("run.json").display().to_string(),
-                expected: self.study.name(&self.run),
-            }),
         }
     }
 
@@ -244,6 +228,31 @@ impl Single<'_> {
             source,
         })?;
         Ok(fresh)
+    }
+}
+
+/// The `run.json` of a run, which must be that of the plan's; only its budget may be
+/// another.
+///
+/// # Errors
+/// When it cannot be read, or is that of another run.
+pub(super) fn check_origin(
+    study: &Study,
+    run: &RunId,
+    expected: &Scenario,
+) -> Result<Manifest, SingleError> {
+    let folder = study.run_folder(run);
+    let manifest = RunFolder::read_manifest(&folder)?;
+    let mut found = manifest.scenario.clone();
+    if study.arm(run).base.is_matched() {
+        found.evolution.generation_limit = expected.evolution.generation_limit;
+    }
+    match found == *expected && manifest.seed == run.seed {
+        true => Ok(manifest),
+        false => Err(SingleError::Another {
+            path: folder.join("run.json").display().to_string(),
+            expected: study.name(run),
+        }),
     }
 }
 

@@ -1,0 +1,208 @@
+//! What a report needs to know of a run, read from its folder.
+
+use serde::Serialize;
+
+use super::single::{SingleError, check_origin, fresh, summary};
+use super::study::{RunId, Study};
+use crate::evolution::{Experiment, GenerationRecord, RankedRecord, read_tree};
+use crate::hierarchy::{canonical, without_repeats};
+use crate::lab::{Event, RunError, WorldTask, read_events, with_world};
+use crate::worlds::World;
+
+/// A run that is done.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Facts {
+    /// The run.
+    #[serde(skip)]
+    pub run: RunId,
+    /// Version and commit of the program that did it.
+    pub version: String,
+    /// Generations to termination.
+    pub generations: u64,
+    /// Whether evolution converged; else it ended at its limit.
+    pub converged: bool,
+    /// Control steps, training of the primitive subtasks included.
+    pub control_steps: u64,
+    /// The best individual of the last generation.
+    pub winner: Winner,
+    /// Generation by generation.
+    pub course: Vec<Moment>,
+    /// How good the winner's structure is.
+    pub fresh: FreshFacts,
+}
+
+/// The structure that a run ended with.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Winner {
+    /// Its text.
+    pub tree: String,
+    /// Its structure: children sorted, repeated primitive children left out.
+    pub structure: String,
+    /// Its composite subtasks, the root counted.
+    pub composites: Vec<String>,
+    /// Its distinct primitive subtasks.
+    pub primitives: Vec<String>,
+    /// For each state type the primitive subtasks that can be selected.
+    pub selectable: Vec<Vec<String>>,
+}
+
+/// One generation, in numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Moment {
+    /// Mean time steps of a scored trial of the individual with the best fitness.
+    pub best_steps: f64,
+    /// The same of the individual in the middle of the population by fitness: of 16 the
+    /// eighth.
+    pub middle_steps: f64,
+    /// Mean structural difference of the better half to the best (Thesis 4.5.2).
+    pub difference: f64,
+    /// How much selection probabilities have changed since the generation before: total
+    /// variation distance, averaged over state types; 0 in the first.
+    pub policy_change: f64,
+}
+
+/// How good the winner's structure is, by fresh hierarchies on fresh trials.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FreshFacts {
+    /// Mean time steps of a trial.
+    pub steps: f64,
+    /// Its standard error.
+    pub standard_error: Option<f64>,
+    /// Share of the trials that delivered.
+    pub delivered_share: f64,
+}
+
+impl Facts {
+    /// The facts of a run; none while it is not done.
+    ///
+    /// # Errors
+    /// When its folder holds another run, or a file that cannot be read.
+    pub fn read(study: &Study, run: &RunId) -> Result<Option<Self>, SingleError> {
+        let folder = study.run_folder(run);
+        let (Some(outcome), Some(fresh)) = (summary(&folder)?, fresh(&folder)?) else {
+            return Ok(None);
+        };
+        let scenario = study.arm(run).apply(study.scenario(run))?;
+        let manifest = check_origin(study, run, &scenario)?;
+        let file = folder.join("events.jsonl");
+        let events = read_events(&file).map_err(|source| RunError::Log {
+            file: file.display().to_string(),
+            source,
+        })?;
+        let records: Vec<_> = events
+            .into_iter()
+            .filter_map(|event| match event {
+                Event::Generation(record) => Some(record),
+                _ => None,
+            })
+            .collect();
+        let best = records.last().and_then(|record| record.individuals.first());
+        let best = best.ok_or_else(|| SingleError::Misfit {
+            path: file.display().to_string(),
+            message: String::from("holds no generation"),
+        })?;
+        let winner = with_world(scenario, OfTree(best))?;
+        Ok(Some(Self {
+            run: *run,
+            version: format!("{} ({})", manifest.started.version, manifest.started.commit),
+            generations: outcome.generations,
+            converged: outcome.converged,
+            control_steps: outcome.control_steps,
+            winner,
+            course: course(&records),
+            fresh: FreshFacts {
+                steps: fresh.evaluation.mean,
+                standard_error: fresh.evaluation.standard_error,
+                delivered_share: fresh.evaluation.delivered_share,
+            },
+        }))
+    }
+
+    /// A number of the course at a share of the generations: 0 the first, 1 the last.
+    #[must_use]
+    pub fn at(&self, share: f64, of: impl Fn(&Moment) -> f64) -> Option<f64> {
+        let last = self.course.len().checked_sub(1)?;
+        self.course
+            .get((last as f64 * share).round() as usize)
+            .map(of)
+    }
+
+    /// The mean of a number over a part of the course, from one share of the generations
+    /// to another; at least one generation.
+    #[must_use]
+    pub fn over(&self, from: f64, to: f64, of: impl Fn(&Moment) -> f64) -> f64 {
+        let n = self.course.len();
+        let first = ((n as f64 * from).floor() as usize).min(n.saturating_sub(1));
+        let end = ((n as f64 * to).ceil() as usize).clamp(first + 1, n.max(first + 1));
+        let part = self.course.get(first..end.min(n)).unwrap_or_default();
+        part.iter().map(of).sum::<f64>() / part.len() as f64
+    }
+}
+
+fn course(records: &[Box<GenerationRecord>]) -> Vec<Moment> {
+    let mut before: Option<&GenerationRecord> = None;
+    let mut course = Vec::with_capacity(records.len());
+    for record in records {
+        // By fitness, not by rank: under random selection the ranks say nothing.
+        let mut means: Vec<_> = (1..=record.individuals.len())
+            .filter_map(|rank| record.mean_trial_steps(rank))
+            .collect();
+        means.sort_unstable_by(f64::total_cmp);
+        let at = |index: usize| means.get(index).copied().unwrap_or(f64::NAN);
+        course.push(Moment {
+            best_steps: at(0),
+            middle_steps: at((means.len() / 2).saturating_sub(1)),
+            difference: record.mean_difference,
+            policy_change: before.map_or(0.0, |before| policy_change(before, record)),
+        });
+        before = Some(record);
+    }
+    course
+}
+
+fn policy_change(before: &GenerationRecord, after: &GenerationRecord) -> f64 {
+    let types = before
+        .selection_probabilities
+        .iter()
+        .zip(&after.selection_probabilities);
+    let distances: Vec<f64> = types
+        .filter_map(|(before, after)| before.as_ref().zip(after.as_ref()))
+        .map(|(before, after)| {
+            let moved = before.iter().map(|(name, p)| {
+                let q = after.get(name).copied().unwrap_or_default();
+                (p - q).abs()
+            });
+            moved.sum::<f64>() / 2.0
+        })
+        .collect();
+    distances.iter().sum::<f64>() / distances.len().max(1) as f64
+}
+
+struct OfTree<'r>(&'r RankedRecord);
+
+impl WorldTask for OfTree<'_> {
+    type Output = Winner;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Winner {
+        let catalogue = experiment.catalogue();
+        let depth = experiment.scenario.evolution.maximum_depth;
+        let tree = read_tree(&self.0.tree, catalogue, depth).ok();
+        let composites = tree
+            .iter()
+            .flat_map(|tree| tree.nodes())
+            .filter_map(|node| {
+                let subtask = catalogue.subtask(node.subtask);
+                subtask.is_composite().then(|| subtask.name.to_owned())
+            });
+        Winner {
+            composites: composites.collect(),
+            structure: tree.as_ref().map_or_else(
+                || self.0.tree.clone(),
+                |tree| canonical(&without_repeats(tree, catalogue), catalogue),
+            ),
+            tree: self.0.tree.clone(),
+            primitives: self.0.primitives.clone(),
+            selectable: self.0.primitives_by_state_type.clone(),
+        }
+    }
+}
