@@ -240,7 +240,7 @@ impl<'s> View<'s> {
         let mut judged = Vec::new();
         for claim in CLAIMS {
             match claim.scope {
-                Scope::Named(names) if names.iter().all(|name| has(name)) => {
+                Scope::Named(names) if names.iter().all(has) => {
                     judged.extend(self.judge(
                         claim,
                         names.first().copied().unwrap_or_default(),

@@ -2,20 +2,15 @@
 
 use super::facts::Facts;
 
-/// A number of a run.
-pub struct Metric {
-    /// Its name, with its unit.
-    pub name: String,
-    /// The number; none where the run has none.
-    pub of: Box<dyn Fn(&Facts) -> Option<f64>>,
-}
+/// How something is read from a run; none where the run has none.
+type Reading<T> = Box<dyn Fn(&Facts) -> Option<T>>;
 
-/// Something that a run shows or not.
-pub struct Trait {
-    /// What.
+/// Something that is read from every run.
+pub struct Measure<T> {
+    /// Its name; of a number, with its unit.
     pub name: String,
-    /// Whether the run shows it; none where it cannot.
-    pub of: Box<dyn Fn(&Facts) -> Option<bool>>,
+    /// How it is read.
+    pub of: Reading<T>,
 }
 
 /// Where courses are looked at, in per cent of the generations.
@@ -23,10 +18,10 @@ const PERCENT: [u32; 6] = [0, 10, 25, 50, 75, 100];
 
 /// The numbers that are reported, for runs with this many state types.
 #[must_use]
-pub fn metrics(state_types: usize) -> Vec<Metric> {
+pub fn metrics(state_types: usize) -> Vec<Measure<f64>> {
     let mut metrics = Vec::new();
-    let mut add = |name: String, of: Box<dyn Fn(&Facts) -> Option<f64>>| {
-        metrics.push(Metric { name, of });
+    let mut add = |name: String, of: Reading<f64>| {
+        metrics.push(Measure { name, of });
     };
     add(
         "generations".into(),
@@ -97,10 +92,10 @@ pub fn metrics(state_types: usize) -> Vec<Metric> {
 
 /// What is counted, for runs with this many state types.
 #[must_use]
-pub fn traits(state_types: usize) -> Vec<Trait> {
+pub fn traits(state_types: usize) -> Vec<Measure<bool>> {
     let mut traits = Vec::new();
-    let mut add = |name: String, of: Box<dyn Fn(&Facts) -> Option<bool>>| {
-        traits.push(Trait { name, of });
+    let mut add = |name: String, of: Reading<bool>| {
+        traits.push(Measure { name, of });
     };
     add("converged".into(), Box::new(|f| Some(f.converged)));
     add(
