@@ -3,8 +3,10 @@
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::Path;
+use std::time::Duration;
 
 use serde::Deserialize;
+use tempfile::NamedTempFile;
 use thiserror::Error;
 
 /// Why a file was not read.
@@ -62,6 +64,10 @@ pub fn stated_format(text: &str) -> Option<u32> {
     Some(any.format)
 }
 
+/// How the names of files begin that are being written. One that is found when nobody
+/// writes was left by a process that died.
+pub const WRITING: &str = ".writing-";
+
 /// Replaces the file at `path` by `bytes`, so that at every moment, and after a
 /// crash, it holds either its old or its new content.
 ///
@@ -71,16 +77,86 @@ pub fn stated_format(text: &str) -> Option<u32> {
 /// # Errors
 /// When the operating system refuses.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = folder_of(path);
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".writing-");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut temporary = builder.tempfile_in(folder)?;
-    temporary.write_all(bytes)?;
+    let temporary = written(path, bytes)?;
     temporary.as_file().sync_all()?;
     temporary.persist(path).map_err(|error| error.error)?;
+    sync_folder(folder_of(path))
+}
+
+/// Replaces the file at `path` by `bytes` in one step, whatever happens to this process.
+/// A crash of the whole machine soon after may lose the new content.
+///
+/// # Errors
+/// When the operating system refuses.
+pub fn write_in_one_step(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let temporary = written(path, bytes)?;
+    temporary.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Makes `path` a second name of the file `from`, in one step and durably; where the
+/// file system has no such names, a copy.
+///
+/// # Errors
+/// When the operating system refuses.
+pub fn link_atomically(from: &Path, path: &Path) -> io::Result<()> {
+    let folder = folder_of(path);
+    let file = File::open(from)?;
+    file.sync_all()?;
+    let place = tempfile::Builder::new()
+        .prefix(WRITING)
+        .tempdir_in(folder)?;
+    let linked = place.path().join("linked");
+    if fs::hard_link(from, &linked).is_err() {
+        fs::copy(from, &linked)?;
+        File::open(&linked)?.sync_all()?;
+    }
+    fs::rename(&linked, path)?;
     sync_folder(folder)
+}
+
+/// Deletes what processes that died have left half made in a folder: entries whose names
+/// begin with `prefix` and that have not changed for `age`. What cannot be deleted harms
+/// nobody and stays.
+///
+/// # Errors
+/// When the folder is there but cannot be read.
+pub fn clean(folder: &Path, prefix: &str, age: Duration) -> io::Result<()> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        entries => entries?,
+    };
+    for entry in entries {
+        let entry = entry?;
+        if !entry.file_name().to_string_lossy().starts_with(prefix) {
+            continue;
+        }
+        let Ok(metadata) = entry.metadata() else {
+            continue;
+        };
+        let unchanged = metadata
+            .modified()
+            .ok()
+            .and_then(|then| then.elapsed().ok());
+        if age.is_zero() || unchanged.is_some_and(|unchanged| unchanged >= age) {
+            let _left = match metadata.is_dir() {
+                true => fs::remove_dir_all(entry.path()),
+                false => fs::remove_file(entry.path()),
+            };
+        }
+    }
+    Ok(())
+}
+
+/// A temporary file beside `path` that holds `bytes`.
+fn written(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(WRITING);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut temporary = builder.tempfile_in(folder_of(path))?;
+    temporary.write_all(bytes)?;
+    Ok(temporary)
 }
 
 /// Makes renames and new files in `folder` durable.

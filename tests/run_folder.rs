@@ -11,11 +11,12 @@ mod common;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, SystemTime};
 
 use common::{
     Record, lines, output, program, run_in, short, smoke, stderr, stdout, threads, wait_until,
 };
-use maxq_lab::lab::{Keep, RunOptions};
+use maxq_lab::lab::{Keep, RunOptions, resume};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -333,4 +334,26 @@ fn a_run_that_cannot_begin_makes_no_folder() {
         "{said}"
     );
     assert!(contents(parent.path()).is_empty());
+}
+
+#[test]
+fn what_a_dead_process_was_writing_is_cleaned_up() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("run");
+    run_in(&folder, &short(&[]), 1, &threads(2));
+    let whole = contents(&folder);
+    fs::write(folder.join(".writing-abc"), "half").unwrap();
+    fs::write(folder.join("generations/.writing-def"), "half").unwrap();
+    let old = parent.path().join(".new-run-old");
+    fs::create_dir_all(old.join("generations")).unwrap();
+    let long_ago = SystemTime::now() - Duration::from_secs(7200);
+    let opened = fs::File::open(&old).unwrap();
+    opened.set_modified(long_ago).unwrap();
+    let fresh = parent.path().join(".new-run-fresh");
+    fs::create_dir(&fresh).unwrap();
+    resume(&folder, None, &threads(2)).unwrap().join().unwrap();
+    assert_eq!(contents(&folder), whole);
+    run_in(&parent.path().join("other"), &short(&[]), 1, &threads(2));
+    assert!(!old.exists());
+    assert!(fresh.exists(), "another process may be making a run in it");
 }

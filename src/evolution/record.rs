@@ -65,6 +65,13 @@ pub struct GenerationRecord {
 }
 
 impl GenerationRecord {
+    /// Whether every probability is a number; otherwise learning has diverged.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let by_type = self.selection_probabilities.iter().flatten();
+        by_type.flat_map(BTreeMap::values).all(|p| p.is_finite())
+    }
+
     /// Mean time steps of a scored trial of the individual at a rank from 1.
     #[must_use]
     pub fn mean_trial_steps(&self, rank: usize) -> Option<f64> {

@@ -4,12 +4,17 @@
 //! `state`. Numbers are written with as few digits as read back to the same bits, so
 //! loading and saving again gives the same bytes.
 
+use std::io;
+
 use serde::{Deserialize, Serialize};
+use serde_json::Serializer;
+use serde_json::ser::{CompactFormatter, Formatter};
 use serde_json::value::RawValue;
 
 use super::checkpoint_error::CheckpointError;
 use super::population_file::{IndividualFile, PrimitiveFile, skills};
 use crate::evolution::{Experiment, State};
+use crate::learning::{Skill, Skills};
 use crate::scenario::Scenario;
 use crate::worlds::World;
 
@@ -57,10 +62,30 @@ pub struct Checkpoint {
     individuals: Vec<IndividualFile>,
 }
 
-#[derive(Serialize, Deserialize)]
+/// JSON without a space. A parameter like the one before is copied rather than worked out
+/// again: many have never been learned and all have the initial value.
+#[derive(Default)]
+struct Compact {
+    bits: Option<u32>,
+    text: Vec<u8>,
+}
+
+impl Formatter for Compact {
+    fn write_f32<W: ?Sized + io::Write>(&mut self, writer: &mut W, value: f32) -> io::Result<()> {
+        if self.bits != Some(value.to_bits()) {
+            self.bits = Some(value.to_bits());
+            self.text.clear();
+            CompactFormatter.write_f32(&mut self.text, value)?;
+        }
+        writer.write_all(&self.text)
+    }
+}
+
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Envelope<'t> {
-    format: u32,
+    #[serde(rename = "format")]
+    _format: u32,
     crc32: String,
     #[serde(borrow)]
     state: &'t RawValue,
@@ -83,6 +108,7 @@ impl Checkpoint {
         state: &State,
         events: LogPosition,
     ) -> Result<Self, CheckpointError> {
+        check_finite(state)?;
         let catalogue = experiment.catalogue();
         let individuals = state.individuals.iter();
         Ok(Self {
@@ -101,7 +127,7 @@ impl Checkpoint {
                 .collect(),
             individuals: individuals
                 .map(|individual| IndividualFile::of(individual, catalogue))
-                .collect::<Result<_, _>>()?,
+                .collect(),
         })
     }
 
@@ -110,13 +136,17 @@ impl Checkpoint {
     /// # Errors
     /// When serialisation fails.
     pub fn to_bytes(&self) -> Result<Vec<u8>, serde_json::Error> {
-        let state = serde_json::to_string(self)?;
-        let crc32 = checksum(state.as_bytes());
-        let mut bytes = Vec::with_capacity(state.len() + 64);
-        bytes.extend_from_slice(
-            format!("{{\"format\":{CHECKPOINT_FORMAT},\"crc32\":\"{crc32}\",\"state\":").as_bytes(),
-        );
-        bytes.extend_from_slice(state.as_bytes());
+        let head = |crc32: &str| {
+            format!("{{\"format\":{CHECKPOINT_FORMAT},\"crc32\":\"{crc32}\",\"state\":")
+        };
+        let mut bytes = head(&checksum(b"")).into_bytes();
+        let start = bytes.len();
+        self.serialize(&mut Serializer::with_formatter(
+            &mut bytes,
+            Compact::default(),
+        ))?;
+        let crc32 = checksum(&bytes[start..]);
+        bytes[..start].copy_from_slice(head(&crc32).as_bytes());
         bytes.extend_from_slice(b"}\n");
         Ok(bytes)
     }
@@ -213,6 +243,25 @@ impl Checkpoint {
             }
         }
         Ok(())
+    }
+}
+
+/// A state in which learning has diverged cannot be gone on from, nor written as JSON.
+///
+/// # Errors
+/// When a learned value is not finite.
+pub(super) fn check_finite(state: &State) -> Result<(), CheckpointError> {
+    let diverged = |place| Err(CheckpointError::Diverged { place });
+    let finite = |skills: &Skills| skills.all().iter().all(Skill::is_finite);
+    if !finite(&state.skills) {
+        return diverged(String::from("the primitive subtasks"));
+    }
+    let found = state.individuals.iter().find(|individual| {
+        !individual.hierarchy.is_finite() || !individual.skills.as_ref().is_none_or(finite)
+    });
+    match found {
+        Some(individual) => diverged(format!("individual {}", individual.id)),
+        None => Ok(()),
     }
 }
 

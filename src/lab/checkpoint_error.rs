@@ -45,12 +45,12 @@ pub enum CheckpointError {
     },
     /// A learned value is not a number; such a state is not written.
     #[error(
-        "individual {id}: learning has diverged, a learned value is not finite; allowed: settings \
+        "{place}: learning has diverged, a learned value is not finite; allowed: settings \
          with a smaller learning rate or smaller initial values"
     )]
     Diverged {
-        /// The individual.
-        id: u64,
+        /// What has learned it.
+        place: String,
     },
 }
 

@@ -4,13 +4,23 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::time::Duration;
 
 use tempfile::TempDir;
 use thiserror::Error;
 
 use super::manifest::{MANIFEST_FORMAT, Manifest};
-use crate::files::{ReadError, read_text, stated_format, sync_folder, write_atomically};
+use crate::files::{
+    ReadError, WRITING, clean, read_text, stated_format, sync_folder, write_atomically,
+};
 use crate::scenario::MAX_FILE_BYTES;
+
+/// How the names of run folders begin that are being made.
+const NEW_RUN: &str = ".new-run-";
+
+/// Making a run folder takes milliseconds: one that was begun so long ago was left by a
+/// process that died.
+const ABANDONED: Duration = Duration::from_secs(3600);
 
 /// Why a run folder cannot be used.
 #[derive(Debug, Error)]
@@ -141,6 +151,7 @@ impl RunFolder {
             _ => Path::new("."),
         };
         fs::create_dir_all(parent).map_err(|error| io_error(parent, error))?;
+        clean(parent, NEW_RUN, ABANDONED).map_err(|error| io_error(parent, error))?;
         let replaced = Self::make_room(path, parent, force)?;
         let fresh = temporary(parent)?;
         let folder = Self {
@@ -204,10 +215,14 @@ impl RunFolder {
                 path: path.display().to_string(),
             });
         }
-        Ok(Self {
+        let folder = Self {
             path: path.to_owned(),
             _lock: lock(path)?,
-        })
+        };
+        for place in [folder.path.clone(), folder.generations()] {
+            clean(&place, WRITING, Duration::ZERO).map_err(|error| io_error(&place, error))?;
+        }
+        Ok(folder)
     }
 
     /// The folder.
@@ -305,7 +320,7 @@ impl RunFolder {
 /// A new folder with a name of its own, deleted if it is not kept.
 fn temporary(parent: &Path) -> Result<TempDir, FolderError> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".new-run-");
+    builder.prefix(NEW_RUN);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
     let made = builder.tempdir_in(parent);

@@ -77,10 +77,7 @@ impl PrimitiveFile {
 }
 
 impl IndividualFile {
-    pub(super) fn of(
-        individual: &Individual,
-        catalogue: &Catalogue,
-    ) -> Result<Self, CheckpointError> {
+    pub(super) fn of(individual: &Individual, catalogue: &Catalogue) -> Self {
         let tree = individual.hierarchy.tree();
         let nodes = individual.hierarchy.values().iter().enumerate();
         let composites: Vec<_> = nodes
@@ -105,25 +102,13 @@ impl IndividualFile {
                 .map(|skill| PrimitiveFile::of(skill, catalogue))
                 .collect()
         });
-        let children = composites.iter().flat_map(|composite| &composite.children);
-        let own = primitives
-            .iter()
-            .flatten()
-            .flat_map(|primitive| &primitive.actions);
-        let learned = children
-            .flat_map(|child| [&child.c_tilde, &child.c])
-            .chain(own);
-        let finite = learned.flatten().all(|value| value.is_finite());
-        if !finite {
-            return Err(CheckpointError::Diverged { id: individual.id });
-        }
-        Ok(Self {
+        Self {
             id: individual.id,
             origin: individual.origin.clone(),
             tree: to_text(tree, catalogue),
             composites,
             primitives,
-        })
+        }
     }
 
     pub(super) fn individual(

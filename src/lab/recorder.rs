@@ -1,31 +1,34 @@
 //! Writes a run to its folder, on a thread of its own.
 //!
-//! Every recorded event is appended as it comes, every kept generation is written.
-//! `checkpoint.json` is brought up to date and synced whenever nothing else waits, so
-//! a run that is faster than the disk is slowed by neither. Checkpoints follow their
-//! events: what a checkpoint counts is on disk before it is.
+//! Every recorded event is appended as it comes, and every kept generation written, in
+//! one step each, so that a process killed at any moment leaves nothing half there. Only
+//! `checkpoint.json` is synced, and brought up to date once a second at most: that is what
+//! a crash of the machine may lose. Checkpoints follow their events: what a checkpoint
+//! counts is on disk before it is.
 
-use std::fs;
-use std::io::{self, Write};
-use std::path::Path;
+use std::io;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, select};
+use crossbeam_channel::{Receiver, after, at, never, select};
 use thiserror::Error;
 
-use super::checkpoint::{Checkpoint, LogPosition};
+use super::checkpoint::{Checkpoint, LogPosition, check_finite};
 use super::checkpoint_error::CheckpointError;
 use super::controls::Controls;
 use super::event::Event;
 use super::folder::{Keep, RunFolder};
 use super::log::Log;
-use crate::evolution::{Experiment, State};
-use crate::files::write_atomically;
+use crate::evolution::{Experiment, GenerationRecord, State};
+use crate::files::{link_atomically, write_atomically, write_in_one_step};
 use crate::worlds::World;
 
 /// Messages that wait for the recorder before evolution waits too: a disk that is too
 /// slow slows a run down rather than losing some of it.
 pub(super) const QUEUE_CAPACITY: usize = 8;
+
+/// Time between two savings of `checkpoint.json`.
+const SAVE_INTERVAL: Duration = Duration::from_secs(1);
 
 /// What the recorder is told.
 #[derive(Debug)]
@@ -34,6 +37,8 @@ pub(super) enum Message {
     Event(Box<Event>),
     /// The state after the events so far.
     State(Arc<State>),
+    /// A generation that has lived, and the state after it.
+    Generation(Box<GenerationRecord>, Arc<State>),
 }
 
 /// Why a run cannot be recorded.
@@ -72,62 +77,74 @@ impl<W: World> Recorder<'_, W> {
         requests: &Receiver<()>,
     ) -> Result<(), RecordError> {
         let mut pending: Option<Pending> = None;
+        let mut saved: Option<Instant> = None;
         loop {
-            let saved_now = select! {
+            let due = match (&pending, saved) {
+                (None, _) => never(),
+                (Some(_), None) => after(Duration::ZERO),
+                (Some(_), Some(saved)) => at(saved + SAVE_INTERVAL),
+            };
+            select! {
                 recv(messages) -> message => match message {
-                    Ok(Message::Event(event)) => {
-                        self.log.append(&event)?;
-                        messages.is_empty()
-                    }
-                    Ok(Message::State(state)) => {
-                        self.archive(pending.take())?;
-                        let position = self.log.position();
-                        pending = Some(Pending { state, position });
-                        messages.is_empty()
-                    }
+                    Ok(message) => pending = self.take(message)?.or(pending),
                     Err(_) => {
                         self.save(pending.take())?;
                         self.log.sync()?;
                         return Ok(());
                     }
                 },
-                recv(requests) -> request => request.is_ok(),
-            };
-            if saved_now {
-                self.save(pending.take())?;
+                recv(requests) -> _ => {
+                    self.save(pending.take())?;
+                    saved = Some(Instant::now());
+                },
+                recv(due) -> _ => {
+                    self.save(pending.take())?;
+                    saved = Some(Instant::now());
+                },
             }
         }
     }
 
-    /// Keeps a state that has been overtaken, if its generation is to be kept.
-    fn archive(&self, pending: Option<Pending>) -> Result<(), RecordError> {
-        let kept = pending.filter(|pending| self.keeps(&pending.state));
-        let Some(Pending { state, position }) = kept else {
-            return Ok(());
+    /// Appends an event and keeps a state, which is to be saved then. A generation in
+    /// which learning has diverged is not recorded: JSON has no word for its numbers.
+    fn take(&mut self, message: Message) -> Result<Option<Pending>, RecordError> {
+        let state = match message {
+            Message::Event(event) => {
+                self.log.append(&event)?;
+                return Ok(None);
+            }
+            Message::State(state) => state,
+            Message::Generation(record, state) => {
+                check_finite(&state)?;
+                if !record.is_finite() {
+                    let place = format!("generation {}", record.generation);
+                    return Err(CheckpointError::Diverged { place }.into());
+                }
+                self.log.append(&Event::Generation(record))?;
+                state
+            }
         };
-        let bytes = self.bytes(&state, position)?;
-        let path = self.folder.generation(state.generation);
-        let mut file = tempfile::NamedTempFile::new_in(self.folder.generations())?;
-        file.write_all(&bytes)?;
-        file.persist(&path).map_err(|error| error.error)?;
-        Ok(())
+        let position = self.log.position();
+        let pending = Pending { state, position };
+        if self.keeps(&pending.state) {
+            let path = self.folder.generation(pending.state.generation);
+            write_in_one_step(&path, &self.bytes(&pending)?)?;
+        }
+        Ok(Some(pending))
     }
 
-    /// Makes a state the checkpoint, and keeps it.
+    /// Makes a state the checkpoint.
     fn save(&self, pending: Option<Pending>) -> Result<(), RecordError> {
-        let Some(Pending { state, position }) = pending else {
+        let Some(pending) = pending else {
             return Ok(());
         };
-        let bytes = self.bytes(&state, position)?;
         self.log.sync()?;
-        let checkpoint = self.folder.checkpoint();
-        write_atomically(&checkpoint, &bytes)?;
-        if self.keeps(&state) {
-            link_or_copy(&checkpoint, &self.folder.generation(state.generation))?;
+        let (generation, checkpoint) = (pending.state.generation, self.folder.checkpoint());
+        match self.keeps(&pending.state) {
+            true => link_atomically(&self.folder.generation(generation), &checkpoint)?,
+            false => write_atomically(&checkpoint, &self.bytes(&pending)?)?,
         }
-        self.controls.tell(Event::CheckpointSaved {
-            generation: state.generation,
-        });
+        self.controls.tell(Event::CheckpointSaved { generation });
         Ok(())
     }
 
@@ -135,18 +152,9 @@ impl<W: World> Recorder<'_, W> {
         state.generation > 0 && self.keep.keeps(state.generation)
     }
 
-    fn bytes(&self, state: &State, position: LogPosition) -> Result<Vec<u8>, RecordError> {
-        let checkpoint = Checkpoint::of(self.experiment, self.seed, state, position)?;
+    fn bytes(&self, pending: &Pending) -> Result<Vec<u8>, RecordError> {
+        let Pending { state, position } = pending;
+        let checkpoint = Checkpoint::of(self.experiment, self.seed, state, *position)?;
         Ok(checkpoint.to_bytes().map_err(io::Error::from)?)
     }
-}
-
-/// Gives a file a second name; where the file system has no links, copies it. The
-/// next checkpoint replaces the first name and leaves the second alone.
-fn link_or_copy(from: &Path, to: &Path) -> io::Result<()> {
-    match fs::remove_file(to) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-        _ => {}
-    }
-    fs::hard_link(from, to).or_else(|_| fs::copy(from, to).map(|_| ()))
 }

@@ -130,11 +130,13 @@ pub fn resume(
     let scenario = manifest.scenario.clone();
     let workers = workers(&scenario, options)?;
     manifest.resumed.push(Invocation::now(workers.threads()));
-    folder.write_manifest(&manifest)?;
     begin(Preparation {
         scenario,
         seed: manifest.seed,
-        place: Place::Open(folder),
+        place: Place::Open {
+            folder,
+            manifest: Box::new(manifest),
+        },
         workers,
         keep: options.keep,
         checkpoint,
@@ -173,19 +175,23 @@ enum Place {
         manifest: Box<Manifest>,
         force: bool,
     },
-    /// In an existing run folder.
-    Open(RunFolder),
+    /// In an existing run folder, whose manifest changes when all has proved usable.
+    Open {
+        folder: RunFolder,
+        manifest: Box<Manifest>,
+    },
 }
 
 impl Place {
-    fn folder(self) -> Result<RunFolder, FolderError> {
+    /// The folder, and what is to become of its manifest.
+    fn folder(self) -> Result<(RunFolder, Option<Box<Manifest>>), FolderError> {
         match self {
             Self::New {
                 path,
                 manifest,
                 force,
-            } => RunFolder::create(&path, &manifest, force),
-            Self::Open(folder) => Ok(folder),
+            } => RunFolder::create(&path, &manifest, force).map(|folder| (folder, None)),
+            Self::Open { folder, manifest } => Ok((folder, Some(manifest))),
         }
     }
 }
@@ -210,7 +216,7 @@ impl WorldTask for Preparation {
     /// Reads everything that can be wrong, then starts the evolution thread.
     fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
         let (controls, events) = Controls::new();
-        let folder = self.place.folder()?;
+        let (folder, manifest) = self.place.folder()?;
         let path = folder.path().to_owned();
         let in_file = |name: &str| path.join(name).display().to_string();
         let state = self
@@ -236,6 +242,10 @@ impl WorldTask for Preparation {
                 Vec::new(),
             ),
         };
+        // Written last: a refused resume leaves no trace.
+        if let Some(manifest) = manifest {
+            folder.write_manifest(&manifest)?;
+        }
         let (scenario, seed) = (self.scenario, self.seed);
         let work = Work {
             experiment,

@@ -162,8 +162,10 @@ impl<W: World> Work<W> {
             let record = evolution.step(controls.gate(), |lived| show(generation, lived))?;
             progress.best = BestIndividual::of(&record);
             progress.note(evolution.state());
-            self.fact(Event::Generation(Box::new(record)), recorder)?;
-            self.keep(&evolution, recorder)?;
+            let (record, state) = (Box::new(record), Arc::clone(evolution.state()));
+            let message = Message::Generation(record.clone(), state);
+            recorder.send(message).map_err(|_| Stopped)?;
+            controls.tell(Event::Generation(record));
             controls.generation_over();
         }
         let ending = match progress.converged {

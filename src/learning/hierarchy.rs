@@ -121,6 +121,12 @@ impl CompositeValues {
         layouts.map(|layout| [next(layout), next(layout)]).collect()
     }
 
+    fn is_finite(&self) -> bool {
+        self.parameters
+            .iter()
+            .all(|parameter| parameter.is_finite())
+    }
+
     /// Number of children.
     #[must_use]
     pub fn children(&self) -> usize {
@@ -172,6 +178,13 @@ impl Hierarchy {
     #[must_use]
     pub fn tree(&self) -> &Tree {
         &self.tree
+    }
+
+    /// Whether every learned value is a finite number; otherwise learning has diverged.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let mut values = self.values.iter().flatten();
+        values.all(CompositeValues::is_finite)
     }
 
     /// The learned values in the order of the nodes; `None` for primitive subtasks.

@@ -70,6 +70,14 @@ impl Skill {
         self.parameters.chunks_exact(self.width)
     }
 
+    /// Whether every parameter is a finite number; otherwise learning has diverged.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.parameters
+            .iter()
+            .all(|parameter| parameter.is_finite())
+    }
+
     /// Room for Q_prim of every action.
     pub(super) fn values(&self) -> Vec<Row> {
         vec![[0.0; ROW]; self.actions.div_ceil(ROW)]

@@ -392,8 +392,12 @@ fn the_largest_and_smallest_numbers_allowed_do_not_panic() {
         "evolution.tournament_size=6",
     ]);
     let folder = tempfile::tempdir().unwrap();
-    let run = maxq_lab::lab::start(scenario, 1, &folder.path().join("run"), &Default::default());
-    match run.unwrap().join() {
+    let path = folder.path().join("run");
+    let run = maxq_lab::lab::start(scenario, 1, &path, &Default::default());
+    let ended = run.unwrap().join();
+    // A number that is none would be written as null, which no log may hold.
+    assert!(maxq_lab::lab::read_events(&path.join("events.jsonl")).is_ok());
+    match ended {
         Ok(outcome) => assert_eq!(outcome.generations, 6),
         Err(error) => assert!(
             error.to_string().contains("learning has diverged"),

@@ -40,7 +40,11 @@ impl Victim {
     }
 
     fn says(&self) -> String {
+        let manifest = self.folder.join("run.json");
+        let before = fs::read(&manifest).ok();
         let said = refused(program().arg("resume").arg(&self.folder));
+        let after = fs::read(&manifest).ok();
+        assert!(before == after, "a refused resume leaves run.json alone");
         for (path, bytes) in &self.whole {
             fs::write(path, bytes).unwrap();
         }
