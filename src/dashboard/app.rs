@@ -21,9 +21,6 @@ use crate::lab::specimen::Bench;
 /// Smallest size, in columns and rows, at which there is something to see.
 pub const SMALLEST: (u16, u16) = (40, 12);
 
-/// How long a message stays.
-const MESSAGE_TIME: Duration = Duration::from_secs(8);
-
 /// The dashboard.
 pub struct App {
     desk: Desk,
@@ -133,20 +130,12 @@ impl App {
     }
 
     fn tick(&mut self, elapsed: Duration) {
+        let said = self.desk.message().is_some();
         self.dirty |= self.desk.tick(elapsed);
         if self.on_screen().iter().any(|view| view.needs_stage()) {
             self.dirty |= self.desk.stage.tick(elapsed);
         }
-        let old = |since: Duration| self.desk.clock.saturating_sub(since) > MESSAGE_TIME;
-        if self
-            .desk
-            .message
-            .as_ref()
-            .is_some_and(|(_, since)| old(*since))
-        {
-            self.desk.message = None;
-            self.dirty = true;
-        }
+        self.dirty |= said != self.desk.message().is_some();
     }
 
     /// Puts on the stage what is looked at, and lets the views on the screen compute what
@@ -227,7 +216,7 @@ impl App {
                     _ => return Vec::new(),
                 };
                 let scroll = scroll.saturating_add_signed(i16::try_from(by).unwrap_or(i16::MIN));
-                let most = overlay::help_lines(&self.desk, self.view, "").len();
+                let most = overlay::help_lines(&self.desk, self.view, &self.lessons()).len();
                 let scroll = scroll.min(u16::try_from(most).unwrap_or(u16::MAX));
                 self.overlay = Some(Overlay::Help { scroll });
                 Vec::new()
@@ -416,9 +405,20 @@ impl App {
             .map_or(&[][..], |view| view.hints());
         header::hint_bar(desk, self.view, hints, area, buffer);
         if let Some(open) = &self.overlay {
-            let lesson = self.view_of(self.view).map_or("", |view| view.lesson());
-            overlay::draw(open, desk, self.view, lesson, area, buffer);
+            overlay::draw(open, desk, self.view, &self.lessons(), area, buffer);
         }
+    }
+
+    /// What there is to see: on the screen, and in the panel that has the focus.
+    fn lessons(&self) -> Vec<(&'static str, &'static str)> {
+        let mut lessons = Vec::new();
+        for id in [self.view, self.active()] {
+            let lesson = self.view_of(id).map_or("", |view| view.lesson());
+            if !lessons.contains(&(id.title(), lesson)) {
+                lessons.push((id.title(), lesson));
+            }
+        }
+        lessons
     }
 
     fn draw_panel(&self, id: ViewId, area: Rect, focused: bool, buffer: &mut Buffer) {

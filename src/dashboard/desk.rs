@@ -1,5 +1,6 @@
 //! What the person has chosen to look at, over what there is to see.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -18,6 +19,11 @@ use crate::worlds::scene::Scenery;
 
 /// Generations a second while time runs through them.
 const PLAYED_PER_SECOND: u32 = 4;
+
+/// How long a message is new.
+const MESSAGE_TIME: Duration = Duration::from_secs(5);
+/// Messages that are kept.
+const LOG: usize = 100;
 
 /// How the dashboard stands to its run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,8 +99,6 @@ pub struct Desk {
     pub pace: Pace,
     /// Whether time runs through the generations.
     pub playing: bool,
-    /// What was said last, and when.
-    pub message: Option<(String, Duration)>,
     pub(super) stepping: bool,
     pub(super) stopping: bool,
     pub(super) closed: bool,
@@ -102,6 +106,7 @@ pub struct Desk {
     live: Model,
     held: Option<Model>,
     played: Duration,
+    log: VecDeque<(String, Duration)>,
 }
 
 impl Desk {
@@ -127,7 +132,6 @@ impl Desk {
             clock: Duration::ZERO,
             pace: Pace::default(),
             playing: false,
-            message: None,
             stepping: false,
             stopping: false,
             closed: mode == Mode::Replay,
@@ -135,6 +139,7 @@ impl Desk {
             live: Model::default(),
             held: None,
             played: Duration::ZERO,
+            log: VecDeque::new(),
         }
     }
 
@@ -320,6 +325,23 @@ impl Desk {
 
     /// Says something to the person.
     pub fn say(&mut self, text: impl Into<String>) {
-        self.message = Some((text.into(), self.clock));
+        if self.log.len() == LOG {
+            self.log.pop_front();
+        }
+        self.log.push_back((text.into(), self.clock));
+    }
+
+    /// What was said and when, the latest last.
+    #[must_use]
+    pub fn log(&self) -> &VecDeque<(String, Duration)> {
+        &self.log
+    }
+
+    /// What was said last, while it is new.
+    #[must_use]
+    pub fn message(&self) -> Option<&str> {
+        let (text, since) = self.log.back()?;
+        let new = self.clock.saturating_sub(*since) <= MESSAGE_TIME;
+        (new).then_some(text)
     }
 }

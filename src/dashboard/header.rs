@@ -8,7 +8,7 @@ use super::keys::Action;
 use super::look::{Paint, fitted, one_line, put, width};
 use super::views::ViewId;
 
-/// Actions that every hint bar ends with.
+/// Actions that a hint bar names after those of the view.
 const COMMON: &[Action] = &[
     Action::Pause,
     Action::StepGeneration,
@@ -16,9 +16,10 @@ const COMMON: &[Action] = &[
     Action::Earlier,
     Action::Later,
     Action::Export,
-    Action::Help,
-    Action::Quit,
 ];
+
+/// Actions that every hint bar ends with.
+const ALWAYS: &[Action] = &[Action::Help, Action::Quit];
 
 /// Draws the first line: the run, what it is doing, and the view.
 ///
@@ -116,30 +117,55 @@ pub(super) fn hint_bar(
         ..area
     };
     let look = &desk.look;
-    if let Some((text, _)) = &desk.message {
+    if let Some(text) = desk.message() {
         let text = fitted(&one_line(text), usize::from(line.width), look.signs);
         put(buffer, line, (0, 0), &text, look.style(Paint::Notice));
         return;
     }
-    let mut column = 0;
     let more = match view {
         ViewId::Overview => &[Action::NextPanel, Action::Open][..],
         _ => &[Action::Back][..],
     };
-    for &action in hints.iter().chain(more).chain(COMMON) {
-        let useless = desk.mode != Mode::Live
-            && matches!(
-                action,
-                Action::Pause | Action::StepGeneration | Action::Freeze
-            );
-        let Some((key, hint)) = desk.keys.hint(action).filter(|_| !useless) else {
-            continue;
-        };
-        let needed = u16::try_from(width(&key) + 1 + width(hint)).unwrap_or(u16::MAX);
-        if column + needed > line.width {
-            return;
+    let pairs = |actions: &[&[Action]]| {
+        let actions = actions.iter().flat_map(|actions| actions.iter());
+        let useful = actions.filter(|action| desk.mode == Mode::Live || !is_steering(**action));
+        let hints = useful.filter_map(|&action| desk.keys.hint(action));
+        hints.collect::<Vec<_>>()
+    };
+    let always = pairs(&[ALWAYS]);
+    let right: u16 = always.iter().map(columns).sum();
+    let right = line.width.saturating_sub(right);
+    let mut column = 0;
+    for pair in pairs(&[hints, more, COMMON]) {
+        if column + columns(&pair) > right {
+            break;
         }
-        column = put(buffer, line, (column, 0), &key, look.style(Paint::Key));
-        column = put(buffer, line, (column + 1, 0), hint, look.style(Paint::Dim)) + 2;
+        column = put_hint(desk, line, column, &pair, buffer);
     }
+    let mut column = right;
+    for pair in &always {
+        column = put_hint(desk, line, column, pair, buffer);
+    }
+}
+
+/// Whether an action is of use where evolution goes on only.
+fn is_steering(action: Action) -> bool {
+    matches!(
+        action,
+        Action::Pause | Action::StepGeneration | Action::Checkpoint | Action::Stop | Action::Freeze
+    )
+}
+
+/// A key and what it does.
+type Hint = (String, &'static str);
+
+/// Columns that a hint takes, two of them empty.
+fn columns((key, hint): &Hint) -> u16 {
+    u16::try_from(width(key) + width(hint) + 3).unwrap_or(u16::MAX)
+}
+
+fn put_hint(desk: &Desk, line: Rect, column: u16, (key, hint): &Hint, buffer: &mut Buffer) -> u16 {
+    let look = &desk.look;
+    let column = put(buffer, line, (column, 0), key, look.style(Paint::Key));
+    put(buffer, line, (column + 1, 0), hint, look.style(Paint::Dim)) + 2
 }

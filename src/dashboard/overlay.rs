@@ -68,13 +68,13 @@ pub(super) fn draw(
     open: &Overlay,
     desk: &Desk,
     view: ViewId,
-    lesson: &str,
+    lessons: &[(&str, &str)],
     area: Rect,
     buffer: &mut Buffer,
 ) {
     match open {
         Overlay::Help { scroll } => {
-            let lines = help_lines(desk, view, lesson);
+            let lines = help_lines(desk, view, lessons);
             window(desk, ("Help", view.title()), &lines, *scroll, area, buffer);
         }
         Overlay::Export => {
@@ -116,20 +116,32 @@ fn of_scope(desk: &Desk, scope: Scope) -> Vec<Line> {
     actions.map(|&action| line(desk, action)).collect()
 }
 
-/// The lesson of the view and all keys that do something in it.
-pub(super) fn help_lines(desk: &Desk, view: ViewId, lesson: &str) -> Vec<Line> {
-    let mut lines: Vec<_> = lesson.lines().map(plain).collect();
-    lines.push(plain(""));
-    for &action in Action::ALL {
-        let counts = match action.scope() {
-            Scope::Everywhere => true,
-            Scope::In(views) => view == ViewId::Overview || views.contains(&view),
-            Scope::ExportMenu | Scope::Question => false,
-        };
-        if counts {
-            lines.push(line(desk, action));
+/// What there is to see, and all keys that do something there.
+pub(super) fn help_lines(desk: &Desk, view: ViewId, lessons: &[(&str, &str)]) -> Vec<Line> {
+    let mut lines = Vec::new();
+    for (title, lesson) in lessons {
+        lines.push((String::new(), (*title).to_owned(), Paint::Title));
+        lines.extend(lesson.lines().map(plain));
+        lines.push(plain(""));
+    }
+    let here = |scope: Scope| match scope {
+        Scope::In(views) => view == ViewId::Overview || views.contains(&view),
+        Scope::Everywhere | Scope::ExportMenu | Scope::Question => false,
+    };
+    let groups: [(&str, &dyn Fn(Scope) -> bool); 2] = [
+        ("Keys here", &here),
+        ("Keys everywhere", &|scope| scope == Scope::Everywhere),
+    ];
+    for (title, counts) in groups {
+        let actions = Action::ALL.iter().filter(|action| counts(action.scope()));
+        let of_group: Vec<_> = actions.map(|&action| line(desk, action)).collect();
+        if !of_group.is_empty() {
+            lines.push((String::new(), title.to_owned(), Paint::Title));
+            lines.extend(of_group);
+            lines.push(plain(""));
         }
     }
+    lines.pop();
     lines
 }
 

@@ -156,7 +156,7 @@ impl<'l> Canvas<'l> {
             Layer::Trail => signs.trail,
             Layer::Ray => signs.ray,
             Layer::Wall => signs.wall,
-            Layer::Curve(which) => signs.series[usize::from(which) % signs.series.len()],
+            Layer::Curve(which) => signs.series[usize::from(which + 2) % signs.series.len()],
         }
     }
 }

@@ -1,12 +1,14 @@
 //! How things look: themes, signs, lines of text, the canvas.
 
 mod canvas;
+mod chart;
 mod paint;
 mod signs;
 mod text;
 mod theme;
 
 pub use canvas::{Canvas, Layer};
+pub use chart::{Chart, Curve};
 pub use paint::Paint;
 pub use signs::Signs;
 pub use text::{fitted, one_line, put, width};

@@ -233,7 +233,10 @@ fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut 
         return;
     };
     let status = rollout.status();
-    let step = format!("trial {} step {:<4} ", status.trial, status.steps);
+    let step = match area.width >= 36 {
+        true => format!("trial {} step {:<4} ", status.trial, status.steps),
+        false => format!("{:<4} ", status.steps),
+    };
     let column = put(buffer, area, (0, 0), &step, look.style(Paint::Text));
     let (text, paint) = match status.ended {
         Some(record) if record.delivered => (String::from("done"), Paint::Good),
@@ -243,7 +246,11 @@ fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut 
     let room = usize::from(area.width.saturating_sub(column));
     let text = fitted(&text, room, look.signs);
     put(buffer, area, (column, 0), &text, look.style(paint));
-    let mut column = put(buffer, area, (0, 1), "trials ", look.style(Paint::Dim));
+    let before = match status.history.is_empty() {
+        true => "no trial has ended yet",
+        false => "trials ",
+    };
+    let mut column = put(buffer, area, (0, 1), before, look.style(Paint::Dim));
     for record in status.history.iter().rev() {
         let (text, paint) = match record.delivered {
             true => (format!("{} ", record.steps), Paint::Text),

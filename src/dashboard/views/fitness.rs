@@ -3,123 +3,100 @@
 use std::fmt::Write;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::View;
+use super::{View, nothing_yet};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Canvas, Layer, Paint, put, width};
+use crate::dashboard::look::{Chart, Curve, Look, Paint, put};
 use crate::evolution::GenerationRecord;
 
 /// Fitness over generations (Thesis Figure 4.8), structural difference below (4.7).
+///
+/// ```text
+///  ╭ Fitness  time steps a trial, of the 8 best ╮
+///  │ 1006 ⠒⢄   │                                │
+///  │  390   ⠑⠒⠤┼⠤⠤                              │
+///  │ best 406  median 518  worst 616            │   at the generation shown
+///  │    0 ⢀⠤⠒⠒⠒┼⠉⠉                              │
+///  │  -18 ⠊    │                                │
+///  │ structural difference to the best -1.2     │
+///  ╰────────────────────────────────────────────╯
+/// ```
 pub(super) struct Fitness;
 
-/// Ranks whose fitness is drawn: the best, the middle and the worst of the better half.
-fn ranks(record: &GenerationRecord) -> [usize; 3] {
-    let half = (record.individuals.len() / 2).max(1);
-    [1, half.div_ceil(2), half]
-}
+const CURVES: [(&str, Paint); 3] = [
+    ("best", Paint::Best),
+    ("median", Paint::Median),
+    ("worst", Paint::Worst),
+];
 
-const PAINTS: [Paint; 3] = [Paint::Best, Paint::Median, Paint::Worst];
-const NAMES: [&str; 3] = ["best", "median", "worst"];
+/// Rows from which on there are two charts.
+const TWO_CHARTS: u16 = 11;
 
 impl View for Fitness {
     fn caption(&self, desk: &Desk) -> String {
-        let half = desk
-            .shown()
-            .map_or(0, |record| record.individuals.len() / 2);
-        match half {
-            0 => String::from("time steps a trial"),
-            half => format!("time steps a trial, of the {half} best"),
+        match desk.shown().map(|record| better_half(record)) {
+            None | Some(0) => String::from("time steps a trial"),
+            Some(half) => format!("time steps a trial, of the {half} best"),
         }
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let records = desk.model().generations();
-        let curves: Vec<[f64; 4]> = records.iter().filter_map(|record| point(record)).collect();
-        let Some(highest) = curves.iter().map(|p| p[3]).reduce(f64::max) else {
+        let (Some(chart), Some(shown)) = (fitness_chart(desk), desk.shown()) else {
+            return nothing_yet(desk, area, buffer);
+        };
+        let look = &desk.look;
+        let two = area.height >= TWO_CHARTS;
+        let lower = if two { area.height / 3 } else { 0 };
+        let rows = [
+            Constraint::Fill(1),
+            Constraint::Length(1.min(area.height / 3)),
+            Constraint::Length(lower),
+            Constraint::Length(u16::from(two)),
+        ];
+        let [above, legend, below, difference] = Layout::vertical(rows).areas(area);
+        chart.draw(look, above, buffer);
+        draw_legend(look, shown, legend, buffer);
+        if two {
+            difference_chart(desk).draw(look, below, buffer);
+            let text = format!(
+                "structural difference to the best {:.1}",
+                shown.mean_difference
+            );
             put(
                 buffer,
-                area,
+                difference,
                 (1, 0),
-                "no generation has lived yet",
-                desk.look.style(Paint::Dim),
+                &text,
+                look.style(Paint::Series1),
             );
-            return;
-        };
-        let (first, last) = (
-            curves[0][0],
-            curves[curves.len() - 1][0].max(curves[0][0] + 1.0),
-        );
-        let top = highest.max(1.0) * 1.02;
-        let labels = [format!("{top:.0}"), String::from("0")];
-        let left = labels.iter().map(|label| width(label)).max().unwrap_or(0) as u16 + 1;
-        let plot = Rect {
-            x: area.x + left.min(area.width),
-            width: area.width.saturating_sub(left),
-            height: area.height.saturating_sub(1),
-            ..area
-        };
-        let dim = desk.look.style(Paint::Dim);
-        put(buffer, area, (0, 0), &labels[0], dim);
-        put(
-            buffer,
-            area,
-            (0, plot.height.saturating_sub(1)),
-            &labels[1],
-            dim,
-        );
-        let mut canvas = Canvas::new(&desk.look, plot, [first, 0.0], [last - first, top]);
-        for curve in (0..3).rev() {
-            for pair in curves.windows(2) {
-                let at = |p: &[f64; 4]| [p[0], p[curve + 1]];
-                canvas.line(
-                    at(&pair[0]),
-                    at(&pair[1]),
-                    Layer::Curve(2 - curve as u8),
-                    PAINTS[curve],
-                );
-            }
-            canvas.point(
-                [curves[0][0], curves[0][curve + 1]],
-                Layer::Curve(2 - curve as u8),
-                PAINTS[curve],
-            );
-        }
-        canvas.finish(buffer);
-        if let Some(shown) = desk.shown().and_then(|record| point(record)) {
-            let mut column = 0;
-            for (index, name) in NAMES.iter().enumerate() {
-                let text = format!("{name} {:.0}", shown[index + 1]);
-                let row = area.height.saturating_sub(1);
-                column = put(
-                    buffer,
-                    area,
-                    (column, row),
-                    &text,
-                    desk.look.style(PAINTS[index]),
-                ) + 2;
-            }
         }
     }
 
     fn hints(&self) -> &'static [Action] {
-        &[Action::Earlier, Action::Later, Action::Play]
+        &[
+            Action::Earlier,
+            Action::Later,
+            Action::First,
+            Action::Follow,
+            Action::Play,
+        ]
     }
 
     fn csv(&self, desk: &Desk) -> Option<String> {
-        let mut csv = String::from(
-            "generation,best_steps,median_steps,worst_steps,mean_difference,converged\n",
-        );
+        let names = CURVES.map(|(name, _)| format!("{name}_steps")).join(",");
+        let mut csv = format!("generation,{names},mean_difference,converged\n");
         for record in desk.model().generations() {
-            let Some([generation, best, median, worst]) = point(record) else {
+            let Some([best, median, worst]) = better_half_steps(record) else {
                 continue;
             };
-            let (difference, converged) = (record.mean_difference, record.converged);
+            let (number, converged) = (record.generation, record.converged);
+            let difference = record.mean_difference;
             // Writing to a string cannot fail.
             let _ = writeln!(
                 csv,
-                "{generation},{best},{median},{worst},{difference},{converged}"
+                "{number},{best},{median},{worst},{difference},{converged}"
             );
         }
         Some(csv)
@@ -127,14 +104,80 @@ impl View for Fitness {
 
     fn lesson(&self) -> &'static str {
         "Mean time steps of a scored trial of the best, the median and the worst of the better\n\
-         half of the population (Thesis Figure 4.8). Fewer is better. Fitness is noisy: the same\n\
-         individual scores differently in every generation."
+         half of the population (Thesis Figure 4.8); fewer is better. Fitness is noisy: the same\n\
+         individual scores differently in every generation, and the best is the luckiest too.\n\
+         Below, the mean structural difference of the better half to the best (Figure 4.7): 0\n\
+         when all have one structure, which ends evolution."
     }
 }
 
-/// Generation and mean time steps of a trial at each of the ranks.
-fn point(record: &GenerationRecord) -> Option<[f64; 4]> {
-    let [best, median, worst] = ranks(record).map(|rank| record.mean_trial_steps(rank));
-    let point = [record.generation as f64, best?, median?, worst?];
-    point.iter().all(|value| value.is_finite()).then_some(point)
+/// Individuals in the better half.
+fn better_half(record: &GenerationRecord) -> usize {
+    record.individuals.len() / 2
+}
+
+/// Mean time steps of a trial of the best, the median and the worst of the better half.
+fn better_half_steps(record: &GenerationRecord) -> Option<[f64; 3]> {
+    let half = better_half(record).max(1);
+    let at = |rank: usize| {
+        record
+            .mean_trial_steps(rank)
+            .filter(|steps| steps.is_finite())
+    };
+    // Of an even number, the median is between the two in the middle.
+    let median = (at(half.div_ceil(2))? + at(half / 2 + 1)?) / 2.0;
+    Some([at(1)?, median, at(half)?])
+}
+
+fn fitness_chart(desk: &Desk) -> Option<Chart> {
+    let records = desk.model().generations();
+    let steps: Vec<_> = records
+        .iter()
+        .map(|record| (record.generation as f64, better_half_steps(record)))
+        .collect();
+    let lowest = steps.iter().filter_map(|(_, steps)| Some((*steps)?[0]));
+    let lowest = lowest.reduce(f64::min)?;
+    let curves = CURVES.iter().enumerate().map(|(index, (_, paint))| Curve {
+        points: steps
+            .iter()
+            .map(|(generation, steps)| Some([*generation, (*steps)?[index]]))
+            .collect(),
+        paint: *paint,
+    });
+    let mut chart = Chart::of(curves.collect(), [lowest * 0.9, lowest]);
+    chart.cursor = cursor(desk);
+    Some(chart)
+}
+
+fn difference_chart(desk: &Desk) -> Chart {
+    let records = desk.model().generations().iter();
+    let points = records.map(|record| Some([record.generation as f64, record.mean_difference]));
+    let curve = Curve {
+        points: points.collect(),
+        paint: Paint::Series1,
+    };
+    let mut chart = Chart::of(vec![curve], [-1.0, 0.0]);
+    chart.cursor = cursor(desk);
+    chart
+}
+
+/// The generation shown.
+fn cursor(desk: &Desk) -> Option<f64> {
+    desk.shown().map(|record| record.generation as f64)
+}
+
+fn draw_legend(look: &Look, shown: &GenerationRecord, line: Rect, buffer: &mut Buffer) {
+    let Some(steps) = better_half_steps(shown) else {
+        return;
+    };
+    let mut column = 1;
+    for (index, ((name, paint), steps)) in CURVES.iter().zip(steps).enumerate() {
+        // Where curves are drawn with signs, the legend says whose sign is which.
+        let sign = match look.signs.dots {
+            true => String::new(),
+            false => format!("{} ", look.signs.series[(2 - index) % 3]),
+        };
+        let text = format!("{sign}{name} {steps:.0}");
+        column = put(buffer, line, (column, 0), &text, look.style(*paint)) + 2;
+    }
 }

@@ -22,6 +22,8 @@ pub(super) use overview::panels;
 use super::desk::Desk;
 use super::input::Effect;
 use super::keys::Action;
+use super::look::{Paint, fitted, put};
+use crate::evolution::Origin;
 
 /// A view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -152,10 +154,30 @@ fn make(id: ViewId) -> Box<dyn View> {
     match id {
         ViewId::Overview => Box::new(overview::Overview),
         ViewId::Arena => Box::new(arena::Arena),
-        ViewId::Hierarchy => Box::new(hierarchy::Hierarchy),
+        ViewId::Hierarchy => Box::new(hierarchy::Hierarchy::default()),
         ViewId::Fitness => Box::new(fitness::Fitness),
         ViewId::Policy => Box::new(policy::Policy),
         ViewId::Population => Box::new(population::Population::default()),
         ViewId::Status => Box::new(status::Status),
+    }
+}
+
+/// Says that there is nothing to see yet.
+fn nothing_yet(desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    let room = usize::from(area.width.saturating_sub(1));
+    let text = fitted("no generation has lived yet", room, desk.look.signs);
+    put(buffer, area, (1, 0), &text, desk.look.style(Paint::Dim));
+}
+
+/// How an individual came to be, in a word or two.
+fn origin(origin: &Origin) -> String {
+    match origin {
+        Origin::HandCoded => String::from("hand-coded"),
+        Origin::Random => String::from("random"),
+        Origin::Reproduced => String::from("reproduced"),
+        Origin::Crossover {
+            receiver, donor, ..
+        } => format!("{} x {}", receiver.id, donor.id),
+        Origin::Copied { from } => format!("copy of {from}"),
     }
 }

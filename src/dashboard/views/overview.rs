@@ -10,8 +10,10 @@ use crate::dashboard::keys::Action;
 /// Everything at a glance: the panels, as many as there is room for.
 pub(super) struct Overview;
 
-/// Room below which a panel shows too little to be worth its place.
+/// Columns below which there is room for four panels only.
 const WIDE: u16 = 110;
+/// Columns of the status panel.
+const STATUS: u16 = 36;
 
 /// The panels on an area, in the order of the Tab key.
 ///
@@ -24,7 +26,7 @@ const WIDE: u16 = 110;
 ///  ╰─────────╯╰────────────╯╰─────────╯    ╰─────────────╯╰────────────╯
 /// ```
 pub(in crate::dashboard) fn panels(area: Rect) -> Vec<(ViewId, Rect)> {
-    let upper = area.height * 11 / 20;
+    let upper = area.height * 14 / 25;
     let rows = Layout::vertical([Constraint::Length(upper), Constraint::Fill(1)]).areas(area);
     let [above, below]: [Rect; 2] = rows;
     // Cells are about twice as high as wide: a square arena.
@@ -42,10 +44,15 @@ pub(in crate::dashboard) fn panels(area: Rect) -> Vec<(ViewId, Rect)> {
     let upper = [
         Constraint::Length(square),
         Constraint::Fill(1),
-        Constraint::Fill(1),
+        Constraint::Length(STATUS),
     ];
     let [arena, hierarchy, status] = columns(above, upper);
-    let [fitness, policy, population] = columns(below, [Constraint::Fill(1); 3]);
+    let lower = [
+        Constraint::Fill(4),
+        Constraint::Fill(4),
+        Constraint::Fill(5),
+    ];
+    let [fitness, policy, population] = columns(below, lower);
     vec![
         (ViewId::Arena, arena),
         (ViewId::Hierarchy, hierarchy),

@@ -1,17 +1,37 @@
 //! Which primitive subtasks the policies select.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::Modifier;
 
-use super::View;
+use super::{View, nothing_yet};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, put};
+use crate::dashboard::look::{Chart, Curve, Paint, fitted, one_line, put, width};
+use crate::evolution::GenerationRecord;
 
-/// Primitive-selection probabilities of each state type (Thesis Figure 4.10).
+/// Primitive-selection probabilities of each state type (Thesis Figure 4.10): now, as a
+/// bar, and over generations, as curves.
+///
+/// ```text
+///  ╭ Policy  primitive subtask selected ──────╮
+///  │ 2 empty-handed, a battery visible        │
+///  │ ApproachBattery 53 %  |Wander 47 %       │
+///  │ 1 ⠒⢄⡠⠔⠒│⠒⠒                               │
+///  │ 0 ⠑⠒⠤⠔⠒┼⠒⠉                               │
+///  ╰──────────────────────────────────────────╯
+/// ```
 pub(super) struct Policy;
+
+/// Rows of a state type from which on there are curves.
+const WITH_CURVES: u16 = 4;
+/// Columns from which on two state types stand beside each other.
+const TWO_COLUMNS: u16 = 90;
+/// Probabilities below this are not named.
+const SMALL: f64 = 0.005;
 
 impl View for Policy {
     fn caption(&self, _desk: &Desk) -> String {
@@ -20,54 +40,32 @@ impl View for Policy {
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let Some(record) = desk.shown() else {
-            put(
-                buffer,
-                area,
-                (1, 0),
-                "no generation has lived yet",
-                desk.look.style(Paint::Dim),
-            );
-            return;
+            return nothing_yet(desk, area, buffer);
         };
-        let mut row = 0;
-        for (index, probabilities) in record.selection_probabilities.iter().enumerate() {
-            let info = desk.catalogue().state_types.get(index);
-            let title = format!("{} {}", index + 1, info.map_or("", |info| info.description));
-            put(
-                buffer,
-                area,
-                (1, row),
-                &title,
-                desk.look.style(Paint::Title),
-            );
-            row += 1;
-            let text = match probabilities {
-                None => String::from("no such state in this arena"),
-                Some(of) => {
-                    let shares = of.iter().filter(|(_, share)| **share >= 0.005);
-                    let texts: Vec<_> = shares
-                        .map(|(name, share)| format!("{name} {:.0} %", share * 100.0))
-                        .collect();
-                    texts.join("  ")
-                }
-            };
-            put(buffer, area, (3, row), &text, desk.look.style(Paint::Text));
-            row += 1;
+        let types = record.selection_probabilities.len();
+        for (index, place) in places(area, types).into_iter().enumerate() {
+            draw_type(desk, record, index, place, buffer);
         }
     }
 
     fn hints(&self) -> &'static [Action] {
-        &[Action::Earlier, Action::Later, Action::Play]
+        &[
+            Action::Earlier,
+            Action::Later,
+            Action::First,
+            Action::Follow,
+            Action::Play,
+        ]
     }
 
     fn csv(&self, desk: &Desk) -> Option<String> {
         let mut csv = String::from("generation,state_type,primitive,probability\n");
         for record in desk.model().generations() {
-            let types = record.selection_probabilities.iter().enumerate();
-            for (index, of) in types.flat_map(|(index, of)| of.iter().map(move |of| (index, of))) {
-                for (name, share) in of {
+            for (index, of) in record.selection_probabilities.iter().enumerate() {
+                for (name, share) in of.iter().flatten() {
+                    let (number, name) = (record.generation, one_line(name));
                     // Writing to a string cannot fail.
-                    let _ = writeln!(csv, "{},{},{name},{share}", record.generation, index + 1);
+                    let _ = writeln!(csv, "{number},{},{name},{share}", index + 1);
                 }
             }
         }
@@ -77,6 +75,130 @@ impl View for Policy {
     fn lesson(&self) -> &'static str {
         "With which probability the policy, followed from the root down, ends in each primitive\n\
          subtask, averaged over sampled states of a type and the better half of the population\n\
-         (Thesis 4.5.4, Figure 4.10)."
+         (Thesis 4.5.4): now, and over generations (Figure 4.10). A type with one primitive has\n\
+         its behaviour settled by the structure; where there are two, learning chooses."
     }
+}
+
+/// A place for each state type.
+fn places(area: Rect, types: usize) -> Vec<Rect> {
+    let columns = if area.width >= TWO_COLUMNS { 2 } else { 1 };
+    let rows = types.div_ceil(columns);
+    let bands = Layout::vertical(vec![Constraint::Fill(1); rows]).split(area);
+    let places = bands.iter().flat_map(|band| {
+        let halves = Layout::horizontal(vec![Constraint::Fill(1); columns]).spacing(2);
+        halves.split(*band).to_vec()
+    });
+    places.take(types).collect()
+}
+
+fn draw_type(
+    desk: &Desk,
+    record: &GenerationRecord,
+    index: usize,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let look = &desk.look;
+    let line = |row: u16| Rect {
+        y: area.y + row,
+        height: u16::from(row < area.height),
+        ..area
+    };
+    let info = desk.catalogue().state_types.get(index);
+    let title = format!("{} {}", index + 1, info.map_or("", |info| info.description));
+    let room = usize::from(area.width.saturating_sub(1));
+    let title = fitted(&title, room, look.signs);
+    let bar_row = u16::from(area.height > 1);
+    if bar_row == 1 {
+        put(buffer, line(0), (1, 0), &title, look.style(Paint::Title));
+    }
+    match &record.selection_probabilities[index] {
+        Some(of) => draw_bar(desk, of, line(bar_row), buffer),
+        None => {
+            let text = "no such state in this arena";
+            put(buffer, line(bar_row), (1, 0), text, look.style(Paint::Dim));
+        }
+    }
+    if area.height >= WITH_CURVES {
+        let below = Rect {
+            y: area.y + 2,
+            height: area.height - 2,
+            ..area
+        };
+        chart(desk, index).draw(look, below, buffer);
+    }
+}
+
+/// The paint of a primitive subtask.
+fn paint(desk: &Desk, name: &str) -> Paint {
+    let catalogue = desk.catalogue();
+    let mut primitives = catalogue.primitives();
+    let place = primitives.position(|primitive| primitive.name(catalogue) == name);
+    Paint::series(place.unwrap_or(0))
+}
+
+/// Parts of a bar, as long as they are probable.
+fn draw_bar(desk: &Desk, of: &BTreeMap<String, f64>, line: Rect, buffer: &mut Buffer) {
+    let look = &desk.look;
+    let mut parts: Vec<_> = of.iter().filter(|(_, share)| **share >= SMALL).collect();
+    parts.sort_by(|a, b| b.1.total_cmp(a.1));
+    let columns = f64::from(line.width.saturating_sub(2));
+    let (mut sum, mut from) = (0.0, 1);
+    for (index, (name, share)) in parts.iter().enumerate() {
+        sum += **share;
+        let to = 1 + (sum.min(1.0) * columns).round() as u16;
+        let style = look
+            .style(paint(desk, name))
+            .add_modifier(Modifier::REVERSED);
+        let room = usize::from(to.saturating_sub(from));
+        let separator = if index > 0 { "|" } else { "" };
+        let text = label(
+            &one_line(name),
+            **share,
+            room.saturating_sub(separator.len()),
+        );
+        let text = format!("{separator}{text}");
+        let text = fitted(&format!("{text:<room$}"), room, look.signs);
+        from = put(buffer, line, (from, 0), &text, style);
+    }
+}
+
+/// Name and share, as much of it as there is room for.
+fn label(name: &str, share: f64, room: usize) -> String {
+    let percent = format!("{:.0} %", share * 100.0);
+    let whole = format!("{name} {percent}");
+    let short: String = name.chars().take(room).collect();
+    match (width(&whole) <= room, width(name) <= room) {
+        (true, _) => whole,
+        (_, true) => name.to_owned(),
+        _ => short,
+    }
+}
+
+fn chart(desk: &Desk, index: usize) -> Chart {
+    let catalogue = desk.catalogue();
+    let records = desk.model().generations();
+    let curves = catalogue
+        .primitives()
+        .enumerate()
+        .map(|(place, primitive)| {
+            let name = primitive.name(catalogue);
+            let share = |record: &GenerationRecord| {
+                let of = record.selection_probabilities.get(index)?.as_ref()?;
+                Some([record.generation as f64, *of.get(name)?])
+            };
+            Curve {
+                points: records.iter().map(|record| share(record)).collect(),
+                paint: Paint::series(place),
+            }
+        });
+    // A primitive that is never selected has no curve to look at.
+    let curves = curves.filter(|curve| {
+        let mut points = curve.points.iter().flatten();
+        points.any(|point| point[1] >= SMALL)
+    });
+    let mut chart = Chart::of(curves.collect(), [0.0, 1.0]);
+    chart.cursor = desk.shown().map(|record| record.generation as f64);
+    chart
 }

@@ -5,12 +5,12 @@ use std::fmt::Write;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::View;
+use super::{View, nothing_yet, origin};
 use crate::dashboard::desk::{Chosen, Desk};
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, put};
-use crate::evolution::{Origin, RankedRecord};
+use crate::dashboard::look::{Paint, fitted, one_line, put};
+use crate::evolution::RankedRecord;
 
 /// All individuals of a generation, best first.
 #[derive(Default)]
@@ -19,59 +19,157 @@ pub(super) struct Population {
     reversed: bool,
 }
 
-/// What the table is sorted by.
+/// A column of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Column {
     #[default]
     Rank,
     Id,
-    Origin,
+    Steps,
+    Failed,
     Composites,
     Primitives,
     Difference,
+    Origin,
+    Tree,
+}
+
+/// Columns with their heads and widths, in their order. The most important ones are kept
+/// where there is little room.
+const COLUMNS: [(Column, &str, u16); 9] = [
+    (Column::Rank, "rank", 4),
+    (Column::Id, "id", 5),
+    (Column::Steps, "steps", 6),
+    (Column::Failed, "failed", 6),
+    (Column::Composites, "comp", 4),
+    (Column::Primitives, "prim", 4),
+    (Column::Difference, "diff", 5),
+    (Column::Origin, "origin", 11),
+    (Column::Tree, "hierarchy", 20),
+];
+
+/// In which order columns are given up.
+const GIVEN_UP: [Column; 5] = [
+    Column::Tree,
+    Column::Failed,
+    Column::Composites,
+    Column::Primitives,
+    Column::Id,
+];
+
+/// The columns that there is room for.
+fn columns(width: u16) -> Vec<(Column, &'static str, u16)> {
+    let mut columns = COLUMNS.to_vec();
+    for given_up in GIVEN_UP {
+        let needed: u16 = columns.iter().map(|(_, _, width)| width + 1).sum();
+        if needed < width {
+            break;
+        }
+        columns.retain(|(column, ..)| *column != given_up);
+    }
+    columns
 }
 
 impl Column {
-    const ALL: [Self; 6] = [
-        Self::Rank,
-        Self::Id,
-        Self::Origin,
-        Self::Composites,
-        Self::Primitives,
-        Self::Difference,
-    ];
-
+    /// The columns that the table can be sorted by, in the order of the key.
     fn next(self) -> Self {
-        let here = Self::ALL.iter().position(|&column| column == self);
-        Self::ALL[(here.unwrap_or(0) + 1) % Self::ALL.len()]
+        let sortable = &COLUMNS[..COLUMNS.len() - 1];
+        let here = sortable.iter().position(|(column, ..)| *column == self);
+        let next = here.map_or(0, |here| (here + 1) % sortable.len());
+        sortable[next].0
     }
 
+    /// What individuals are ordered by.
     fn key(self, individual: &RankedRecord) -> (i64, String) {
-        let number = |n: usize| (i64::try_from(n).unwrap_or(i64::MAX), String::new());
+        let large = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
+        let number = match self {
+            Self::Rank | Self::Steps => individual.rank as i64,
+            Self::Id => large(individual.id),
+            Self::Failed => failed(individual) as i64,
+            Self::Composites => individual.composites as i64,
+            Self::Primitives => individual.primitives.len() as i64,
+            Self::Difference => individual.difference_to_best,
+            Self::Origin | Self::Tree => 0,
+        };
+        let text = match self {
+            Self::Origin => origin(&individual.origin),
+            Self::Tree => individual.tree.clone(),
+            _ => String::new(),
+        };
+        (number, text)
+    }
+
+    /// What stands in the table.
+    fn text(self, individual: &RankedRecord) -> String {
         match self {
-            Self::Rank => number(individual.rank),
-            Self::Id => (
-                i64::try_from(individual.id).unwrap_or(i64::MAX),
-                String::new(),
-            ),
-            Self::Origin => (0, origin(&individual.origin)),
-            Self::Composites => number(individual.composites),
-            Self::Primitives => number(individual.primitives.len()),
-            Self::Difference => (individual.difference_to_best, String::new()),
+            Self::Rank => individual.rank.to_string(),
+            Self::Id => individual.id.to_string(),
+            Self::Steps => format!("{:.1}", mean_steps(individual)),
+            Self::Failed => match failed(individual) {
+                0 => String::new(),
+                failed => failed.to_string(),
+            },
+            Self::Composites => individual.composites.to_string(),
+            Self::Primitives => individual.primitives.len().to_string(),
+            Self::Difference => match individual.difference_to_best {
+                0 => String::from("same"),
+                difference => difference.to_string(),
+            },
+            Self::Origin => origin(&individual.origin),
+            Self::Tree => one_line(&individual.tree),
         }
+    }
+
+    fn is_number(self) -> bool {
+        !matches!(self, Self::Origin | Self::Tree)
     }
 }
 
-/// How an individual came to be, in a few words.
-fn origin(origin: &Origin) -> String {
-    match origin {
-        Origin::HandCoded => String::from("hand-coded"),
-        Origin::Random => String::from("random"),
-        Origin::Reproduced => String::from("reproduced"),
-        Origin::Crossover {
-            receiver, donor, ..
-        } => format!("{} x {}", receiver.id, donor.id),
-        Origin::Copied { from } => format!("copy of {from}"),
+/// Mean time steps of a scored trial.
+fn mean_steps(individual: &RankedRecord) -> f64 {
+    individual.fitness_steps as f64 / individual.trials.len().max(1) as f64
+}
+
+/// Scored trials that ended at the limit.
+fn failed(individual: &RankedRecord) -> usize {
+    let trials = individual.trials.iter();
+    trials.filter(|trial| !trial.delivered).count()
+}
+
+fn draw_individual(
+    desk: &Desk,
+    columns: &[(Column, &str, u16)],
+    individual: &RankedRecord,
+    is_selected: bool,
+    line: Rect,
+    buffer: &mut Buffer,
+) {
+    let look = &desk.look;
+    let paint = match (is_selected, individual.rank) {
+        (true, _) => Paint::Selected,
+        (false, 1) => Paint::Best,
+        _ => Paint::Text,
+    };
+    let style = look.style(paint);
+    if is_selected {
+        buffer.set_style(line.intersection(buffer.area), style);
+        put(buffer, line, (0, 0), look.signs.pointer, style);
+    }
+    let mut at = 1;
+    for (column, _, width) in columns {
+        let text = column.text(individual);
+        let room = match column {
+            Column::Tree => line.width.saturating_sub(at),
+            _ => *width,
+        };
+        let text = fitted(&text, usize::from(room), look.signs);
+        let room = usize::from(*width);
+        let text = match column.is_number() {
+            true => format!("{text:>room$}"),
+            false => text,
+        };
+        put(buffer, line, (at, 0), &text, style);
+        at += width + 1;
     }
 }
 
@@ -86,6 +184,43 @@ impl Population {
             individuals.reverse();
         }
         individuals
+    }
+
+    /// The heads of the columns; the one that the table is sorted by says so.
+    fn draw_head(
+        &self,
+        desk: &Desk,
+        columns: &[(Column, &str, u16)],
+        area: Rect,
+        buffer: &mut Buffer,
+    ) {
+        let look = &desk.look;
+        let mut at: u16 = 1;
+        for (column, head, width) in columns {
+            let sorted = *column == self.by;
+            let sign = look.signs.order[usize::from(self.reversed)];
+            let head = match sorted {
+                true => format!("{sign}{head}"),
+                false => (*head).to_owned(),
+            };
+            let room = usize::from(*width);
+            let text = match column.is_number() {
+                true => format!("{head:>room$}"),
+                false => head,
+            };
+            let paint = if sorted { Paint::Title } else { Paint::Dim };
+            // A sign before the longest head takes the gap between columns.
+            let over = u16::try_from(text.chars().count().saturating_sub(room)).unwrap_or(0);
+            let over = if column.is_number() { over } else { 0 };
+            put(
+                buffer,
+                area,
+                (at.saturating_sub(over), 0),
+                &text,
+                look.style(paint),
+            );
+            at += width + 1;
+        }
     }
 
     /// Selects the individual some lines further down.
@@ -109,44 +244,38 @@ impl Population {
 impl View for Population {
     fn caption(&self, desk: &Desk) -> String {
         desk.shown().map_or(String::new(), |record| {
-            format!("generation {}", record.generation)
+            let count = record.individuals.len();
+            format!("{count} individuals of generation {}", record.generation)
         })
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let look = &desk.look;
-        let heads = "  rank    id  steps  com pri  diff  origin";
-        put(buffer, area, (0, 0), heads, look.style(Paint::Dim));
+        if desk.shown().is_none() {
+            return nothing_yet(desk, area, buffer);
+        }
         let sorted = self.sorted(desk);
+        let columns = columns(area.width);
+        self.draw_head(desk, &columns, area, buffer);
         let selected = desk.selected().map(|individual| individual.id);
-        let here = sorted
-            .iter()
-            .position(|individual| Some(individual.id) == selected)
-            .unwrap_or(0);
-        let rows = usize::from(area.height.saturating_sub(1)).max(1);
-        let skipped = here
-            .saturating_sub(rows / 2)
-            .min(sorted.len().saturating_sub(rows));
+        let is_selected = |individual: &&RankedRecord| Some(individual.id) == selected;
+        let here = sorted.iter().position(is_selected).unwrap_or(0);
+        let rows = usize::from(area.height.saturating_sub(1));
+        let skipped = here.saturating_sub(rows / 2);
+        let skipped = skipped.min(sorted.len().saturating_sub(rows));
         for (row, individual) in sorted.iter().skip(skipped).take(rows).enumerate() {
-            let is_selected = Some(individual.id) == selected;
-            let pointer = if is_selected { look.signs.pointer } else { " " };
-            let steps = individual.fitness_steps as f64 / individual.trials.len().max(1) as f64;
-            let text = format!(
-                "{pointer} {:>4} {:>5} {steps:>6.0}  {:>3} {:>3} {:>5}  {}",
-                individual.rank,
-                individual.id,
-                individual.composites,
-                individual.primitives.len(),
-                individual.difference_to_best,
-                origin(&individual.origin)
-            );
-            let paint = if is_selected {
-                Paint::Selected
-            } else {
-                Paint::Text
+            let line = Rect {
+                y: area.y + 1 + row as u16,
+                height: 1,
+                ..area
             };
-            let text = fitted(&text, usize::from(area.width), look.signs);
-            put(buffer, area, (0, row as u16 + 1), &text, look.style(paint));
+            draw_individual(
+                desk,
+                &columns,
+                individual,
+                is_selected(individual),
+                line,
+                buffer,
+            );
         }
     }
 
@@ -187,16 +316,17 @@ impl View for Population {
                 individual.primitives.len(),
                 individual.difference_to_best,
                 origin(&individual.origin),
-                individual.tree
+                one_line(&individual.tree)
             );
         }
         Some(csv)
     }
 
     fn lesson(&self) -> &'static str {
-        "All individuals of the generation. steps: mean time steps of a scored trial, the\n\
-         fitness; com, pri: composite and distinct primitive subtasks; diff: structural\n\
-         difference to the best (Thesis 4.5.2), 0 for the same structure; origin: reproduced, or\n\
-         made by crossover of the two individuals named."
+        "All individuals of the generation, best first. steps: mean time steps of a scored trial,\n\
+         the fitness; failed: trials that ended at the limit; comp, prim: composite and distinct\n\
+         primitive subtasks; diff: structural difference to the best (Thesis 4.5.2). origin: a\n\
+         reproduced individual lives on with what it has learned; 165 x 172 is individual 165\n\
+         with a subtree of 172."
     }
 }

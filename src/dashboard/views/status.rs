@@ -6,24 +6,50 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use super::View;
-use crate::dashboard::desk::Desk;
+use crate::dashboard::desk::{Desk, Mode};
 use crate::dashboard::header::activity;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, one_line, put};
 use crate::lab::Ending;
 
 /// What the run is doing.
+///
+/// ```text
+///  ╭ Status ────────────────────────────╮
+///  │ evolution    ▶ RUNNING             │
+///  │ generation   12 of at most 200     │
+///  │ individuals  ━━━━━━━━───── 7 of 14 │
+///  │ time left    at most 3 min         │
+///  │ ...                                │
+///  │ 0:12 checkpoint saved              │   what was said last
+///  ╰────────────────────────────────────╯
+/// ```
 pub(super) struct Status;
+
+/// Column of the values.
+const VALUES: u16 = 13;
 
 impl View for Status {
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
-        for (row, (name, value, paint)) in facts(desk).iter().enumerate() {
-            let Ok(row) = u16::try_from(row) else { return };
+        let room = usize::from(area.width.saturating_sub(VALUES));
+        let mut row = 0;
+        for (name, value, paint) in facts(desk, room) {
             put(buffer, area, (1, row), name, look.style(Paint::Dim));
-            let room = usize::from(area.width.saturating_sub(14));
-            let value = fitted(&one_line(value), room, look.signs);
-            put(buffer, area, (14, row), &value, look.style(*paint));
+            let value = fitted(&one_line(&value), room, look.signs);
+            put(buffer, area, (VALUES, row), &value, look.style(paint));
+            row += 1;
+        }
+        let left = area.height.saturating_sub(row + 1);
+        let log = desk.log();
+        let skipped = log.len().saturating_sub(usize::from(left));
+        for (index, (text, when)) in log.iter().skip(skipped).enumerate() {
+            let at = row + 1 + index as u16;
+            let time = format!("{} ", clock(*when));
+            let column = put(buffer, area, (1, at), &time, look.style(Paint::Dim));
+            let room = usize::from(area.width.saturating_sub(column));
+            let text = fitted(&one_line(text), room, look.signs);
+            put(buffer, area, (column, at), &text, look.style(Paint::Text));
         }
     }
 
@@ -32,60 +58,112 @@ impl View for Status {
     }
 
     fn lesson(&self) -> &'static str {
-        "What the run is doing. A control step is one time step of one individual; the time\n\
-         left is that to the generation limit, evolution may converge long before."
+        "What the run is doing. A control step is one time step of one individual. The time left\n\
+         is that to the generation limit; evolution ends as soon as the better half of the\n\
+         population has one structure. Pausing stops evolution; freezing holds what you see\n\
+         while evolution goes on."
     }
 }
 
+/// A name, a value, and how the value is painted.
 type Fact = (&'static str, String, Paint);
 
-fn facts(desk: &Desk) -> Vec<Fact> {
-    let model = desk.live();
-    let evolution = &desk.scenario().evolution;
+fn facts(desk: &Desk, room: usize) -> Vec<Fact> {
+    let scenario = desk.scenario();
     let (sign, word, paint) = activity(desk);
-    let mut facts = vec![
-        ("evolution", format!("{sign} {word}"), paint),
-        ("scenario", desk.scenario().name.clone(), Paint::Text),
-        ("seed", desk.bench.seed().to_string(), Paint::Text),
-    ];
-    let lived = model.latest().map_or(0, |record| record.generation);
-    let limit = evolution.generation_limit;
-    facts.push((
-        "generation",
-        format!("{lived} of at most {limit}"),
-        Paint::Text,
-    ));
-    if let Some(progress) = model.progress() {
-        let text = match progress.generation {
-            0 => String::from("training the primitive subtasks"),
-            _ => format!("{} of {} have lived", progress.lived, progress.population),
-        };
-        facts.push(("individuals", text, Paint::Text));
-    }
-    match model.ending() {
-        Some(Ending::Converged) => facts.push((
-            "ended",
-            String::from("the better half has one structure"),
-            Paint::Good,
-        )),
-        Some(Ending::GenerationLimit) => {
-            facts.push(("ended", String::from("generation limit"), Paint::Notice))
-        }
-        None => {
-            let left = desk.pace.time_to(limit).map_or(String::from("?"), duration);
-            facts.push(("time left", format!("at most {left}"), Paint::Text));
-        }
-    }
-    if let Some(rate) = desk.pace.steps_per_second() {
-        facts.push(("speed", format!("{rate:.0} control steps/s"), Paint::Text));
-    }
-    let saved = match model.checkpoint() {
+    let mut facts = vec![("evolution", format!("{sign} {word}"), paint)];
+    facts.extend(progress(desk, room));
+    let saved = match desk.live().checkpoint() {
         Some(generation) => format!("after generation {generation}"),
         None => String::from("none yet"),
     };
-    facts.push(("checkpoint", saved, Paint::Text));
-    facts.push(("folder", desk.folder.clone(), Paint::Text));
+    let evolution = &scenario.evolution;
+    let survivors = format!(
+        "{} individuals, the {} best live on",
+        evolution.population_size, evolution.reproduced
+    );
+    let trials = format!(
+        "{} a generation, half of them scored",
+        evolution.trials_per_generation
+    );
+    facts.extend([
+        ("checkpoint", saved, Paint::Text),
+        ("scenario", scenario.name.clone(), Paint::Text),
+        ("seed", desk.bench.seed().to_string(), Paint::Text),
+        ("population", survivors, Paint::Text),
+        ("trials", trials, Paint::Text),
+        ("folder", desk.folder.clone(), Paint::Text),
+    ]);
     facts
+}
+
+/// How far evolution is, and how fast.
+fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
+    let model = desk.live();
+    let limit = desk.scenario().evolution.generation_limit;
+    let lived = model.latest().map_or(0, |record| record.generation);
+    let mut facts = vec![(
+        "generation",
+        format!("{lived} of at most {limit}"),
+        Paint::Text,
+    )];
+    if let Some(progress) = model.progress() {
+        let (lived, all) = (progress.lived, progress.population);
+        let (name, text) = match progress.generation {
+            0 => (
+                "learning",
+                String::from("the primitive subtasks are trained"),
+            ),
+            _ => ("individuals", bar(desk, lived, all, room)),
+        };
+        facts.push((name, text, Paint::Text));
+    }
+    if let Some(record) = model.latest() {
+        let steps = format!("{} control steps", thousands(record.control_steps));
+        facts.push(("computed", steps, Paint::Text));
+    }
+    match model.ending() {
+        Some(Ending::Converged) => {
+            let text = String::from("converged: the better half is alike");
+            facts.push(("ended", text, Paint::Good));
+        }
+        Some(Ending::GenerationLimit) => {
+            let text = String::from("at the generation limit");
+            facts.push(("ended", text, Paint::Notice));
+        }
+        None if desk.mode == Mode::Live => {
+            let rate = desk.pace.steps_per_second();
+            let rate = rate.map_or(String::from("?"), |rate| thousands(rate as u64));
+            facts.push(("speed", format!("{rate} control steps/s"), Paint::Text));
+            let left = desk.pace.time_to(limit).map_or(String::from("?"), duration);
+            facts.push(("time left", format!("at most {left}"), Paint::Text));
+        }
+        None => {}
+    }
+    facts
+}
+
+/// A bar with its numbers.
+fn bar(desk: &Desk, part: usize, whole: usize, room: usize) -> String {
+    let numbers = format!(" {part} of {whole}");
+    let columns = room.saturating_sub(numbers.len() + 1).min(24);
+    let filled = (columns * part.min(whole)).checked_div(whole).unwrap_or(0);
+    let signs = desk.look.signs;
+    let unfilled = signs.unfilled.repeat(columns - filled);
+    format!("{}{unfilled}{numbers}", signs.filled.repeat(filled))
+}
+
+/// A number with its digits in threes.
+fn thousands(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 fn duration(time: Duration) -> String {
@@ -94,5 +172,23 @@ fn duration(time: Duration) -> String {
         0..60 => format!("{seconds} s"),
         60..3600 => format!("{} min {} s", seconds / 60, seconds % 60),
         _ => format!("{} h {} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
+/// Minutes and seconds since the dashboard was opened.
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs();
+    format!("{}:{:02}", seconds / 60, seconds % 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_in_threes() {
+        assert_eq!(thousands(7), "7");
+        assert_eq!(thousands(1_791_820), "1 791 820");
+        assert_eq!(duration(Duration::from_secs(3725)), "1 h 2 min");
     }
 }
