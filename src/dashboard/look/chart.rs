@@ -53,19 +53,8 @@ impl Chart {
                 .map(|point| point[axis])
                 .fold(from, |[low, high], value| [low.min(value), high.max(value)])
         };
-        let mut across = range(0, [f64::INFINITY, f64::NEG_INFINITY]);
-        if !(across[1] > across[0]) {
-            let start = if across[0].is_finite() {
-                across[0]
-            } else {
-                0.0
-            };
-            across = [start, start + 1.0];
-        }
-        let mut up = range(1, least);
-        if !(up[1] > up[0]) {
-            up = [up[0], up[0] + 1.0];
-        }
+        let across = widened(range(0, [f64::INFINITY, f64::NEG_INFINITY]));
+        let up = widened(range(1, least));
         Self {
             across,
             up,
@@ -139,6 +128,15 @@ impl Chart {
                 put(buffer, line, (from, 0), &text, look.style(Paint::Title));
             }
         }
+    }
+}
+
+/// A range that is one.
+fn widened([low, high]: [f64; 2]) -> [f64; 2] {
+    match (low.is_finite() && high.is_finite(), high > low) {
+        (true, true) => [low, high],
+        (true, false) => [low, low + 1.0],
+        (false, _) => [0.0, 1.0],
     }
 }
 

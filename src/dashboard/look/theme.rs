@@ -66,7 +66,7 @@ const TABLE: &[(Paint, [&str; 4])] = &[
     (Paint::Median,   ["180",            "94",             "light-yellow",        ""]),
     (Paint::Worst,    ["174",            "131",            "light-red",           "dim"]),
     (Paint::Wall,     ["250",            "240",            "bold white",          "bold"]),
-    (Paint::Agent,    ["bold 231",       "bold 16",        "bold white",          "bold reverse"]),
+    (Paint::Agent,    ["bold 231",       "bold 16",        "bold white",          "bold"]),
     (Paint::Goal,     ["bold 114",       "bold 28",        "bold light-green",    "bold"]),
     (Paint::Object,   ["bold 221",       "bold 130",       "bold light-yellow",   "bold"]),
     (Paint::Hazard,   ["bold 203",       "bold 124",       "bold light-red",      "bold"]),
@@ -76,10 +76,10 @@ const TABLE: &[(Paint, [&str; 4])] = &[
     (Paint::Ray,      ["139",            "96",             "light-magenta",       "dim"]),
     (Paint::Series1,  ["75",             "25",             "light-blue",          "bold"]),
     (Paint::Series2,  ["150",            "64",             "light-green",         ""]),
-    (Paint::Series3,  ["221",            "130",            "light-yellow",        "underline"]),
-    (Paint::Series4,  ["211",            "125",            "light-magenta",       "reverse"]),
-    (Paint::Series5,  ["80",             "30",             "light-cyan",          "bold underline"]),
-    (Paint::Series6,  ["216",            "88",             "light-red",           "dim"]),
+    (Paint::Series3,  ["221",            "130",            "light-yellow",        "dim"]),
+    (Paint::Series4,  ["211",            "125",            "light-magenta",       "italic"]),
+    (Paint::Series5,  ["80",             "30",             "light-cyan",          "bold italic"]),
+    (Paint::Series6,  ["216",            "88",             "light-red",           "dim italic"]),
 ];
 
 impl Theme {

@@ -2,7 +2,7 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Rect};
-use ratatui::style::Style;
+use ratatui::style::{Modifier, Style};
 
 use super::View;
 use crate::dashboard::desk::Desk;
@@ -101,6 +101,7 @@ fn draw_scene(
 ) {
     let look = &desk.look;
     let mut canvas = Canvas::new(look, area, [0.0, 0.0], scenery.extent);
+    draw_grid(look, &canvas, scenery, area, buffer);
     if let Some(snapshot) = snapshot {
         shade_sight(look, &canvas, scenery, snapshot, area, buffer);
         if let Some(rollout) = desk.stage.rollout() {
@@ -163,7 +164,8 @@ fn draw_mark(look: &Look, canvas: &Canvas<'_>, mark: &Mark, area: Rect, buffer: 
         Role::Hazard => (signs.hazard, Paint::Hazard),
         Role::Landmark => (mark.label.as_str(), Paint::Landmark),
     };
-    put_at(look, canvas, mark.at, (sign, paint), area, buffer);
+    let style = look.style(paint);
+    put_at(canvas, mark.at, (sign, style), area, buffer);
 }
 
 fn draw_agent(
@@ -184,39 +186,69 @@ fn draw_agent(
         None => signs.agent,
     };
     // A robot that carries something looks like what it carries.
-    let paint = match snapshot.carries {
-        Some(_) => Paint::Object,
-        None => Paint::Agent,
+    let style = match snapshot.carries {
+        Some(_) => look.style(Paint::Object).add_modifier(Modifier::REVERSED),
+        None => look.style(Paint::Agent),
     };
-    put_at(look, canvas, snapshot.at, (sign, paint), area, buffer);
+    put_at(canvas, snapshot.at, (sign, style), area, buffer);
 }
 
 /// Writes a sign at a place, over what is there.
 fn put_at(
-    look: &Look,
     canvas: &Canvas<'_>,
     at: [f64; 2],
-    (sign, paint): (&str, Paint),
+    (sign, style): (&str, Style),
     area: Rect,
     buffer: &mut Buffer,
 ) {
     let Some((column, row)) = canvas.cell(at) else {
         return;
     };
-    let cell = Rect::new(area.x + column, area.y + row, 1, 1).intersection(buffer.area);
-    let background = buffer
-        .cell((cell.x, cell.y))
-        .map_or_else(Style::new, |cell| Style::new().bg(cell.bg));
-    for position in cell.positions() {
-        buffer[position].reset();
+    let Some(cell) = buffer.cell_mut((area.x + column, area.y + row)) else {
+        return;
+    };
+    let background = Style::new().bg(cell.bg);
+    cell.reset();
+    put(buffer, area, (column, row), sign, background.patch(style));
+}
+
+/// Shows where the cells of a world of cells are, and fills those that are hazards.
+fn draw_grid(look: &Look, canvas: &Canvas<'_>, scenery: &Scenery, area: Rect, buffer: &mut Buffer) {
+    let Some([columns, rows]) = scenery.grid else {
+        return;
+    };
+    for (column, row) in (0..columns).flat_map(|column| (0..rows).map(move |row| (column, row))) {
+        let centre = [column as f64 + 0.5, row as f64 + 0.5];
+        if let Some(cell) = canvas.cell(centre) {
+            put(
+                buffer,
+                area,
+                cell,
+                look.signs.trail,
+                look.style(Paint::Border),
+            );
+        }
     }
-    put(
-        buffer,
-        area,
-        (column, row),
-        sign,
-        background.patch(look.style(paint)),
-    );
+    let hazards = scenery
+        .places
+        .iter()
+        .filter(|mark| mark.role == Role::Hazard);
+    let hazards: Vec<_> = hazards.map(|mark| mark.at).collect();
+    for (column, row) in
+        (0..area.width).flat_map(|column| (0..area.height).map(move |row| (column, row)))
+    {
+        let [x, y] = canvas.place(column, row);
+        let inside = |at: &[f64; 2]| (at[0] - x).abs() <= 0.5 && (at[1] - y).abs() <= 0.5;
+        if hazards.iter().any(inside) {
+            put(
+                buffer,
+                area,
+                (column, row),
+                look.signs.hazard,
+                look.style(Paint::Hazard),
+            );
+        }
+    }
 }
 
 /// Time step, state type, and how the latest trials ended.

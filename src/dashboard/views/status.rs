@@ -79,13 +79,10 @@ fn facts(desk: &Desk, room: usize) -> Vec<Fact> {
     };
     let evolution = &scenario.evolution;
     let survivors = format!(
-        "{} individuals, the {} best live on",
+        "{}, of which {} live on",
         evolution.population_size, evolution.reproduced
     );
-    let trials = format!(
-        "{} a generation, half of them scored",
-        evolution.trials_per_generation
-    );
+    let trials = format!("{}, the last half scored", evolution.trials_per_generation);
     facts.extend([
         ("checkpoint", saved, Paint::Text),
         ("scenario", scenario.name.clone(), Paint::Text),
@@ -119,22 +116,22 @@ fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
         facts.push((name, text, Paint::Text));
     }
     if let Some(record) = model.latest() {
-        let steps = format!("{} control steps", thousands(record.control_steps));
+        let steps = format!("{} steps", thousands(record.control_steps));
         facts.push(("computed", steps, Paint::Text));
     }
     match model.ending() {
         Some(Ending::Converged) => {
-            let text = String::from("converged: the better half is alike");
+            let text = String::from("converged, one structure");
             facts.push(("ended", text, Paint::Good));
         }
         Some(Ending::GenerationLimit) => {
-            let text = String::from("at the generation limit");
+            let text = String::from("generation limit");
             facts.push(("ended", text, Paint::Notice));
         }
         None if desk.mode == Mode::Live => {
             let rate = desk.pace.steps_per_second();
             let rate = rate.map_or(String::from("?"), |rate| thousands(rate as u64));
-            facts.push(("speed", format!("{rate} control steps/s"), Paint::Text));
+            facts.push(("speed", format!("{rate} steps/s"), Paint::Text));
             let left = desk.pace.time_to(limit).map_or(String::from("?"), duration);
             facts.push(("time left", format!("at most {left}"), Paint::Text));
         }
