@@ -33,6 +33,7 @@ const COMMANDS: &[&[&str]] = &[
     &["study"],
     &["study", "status"],
     &["study", "report"],
+    &["export"],
     &["tree"],
     &["tree", "show"],
     &["tree", "check"],

@@ -7,6 +7,7 @@ mod answer;
 mod appearance;
 mod check;
 mod evaluate;
+mod export;
 mod frame;
 mod manual;
 mod output;
@@ -55,6 +56,7 @@ enum Command {
     Frame(frame::Args),
     Evaluate(evaluate::Args),
     Study(Box<study::Args>),
+    Export(export::Args),
     #[command(subcommand)]
     Tree(tree::Command),
     Primitives(primitives::Args),
@@ -78,6 +80,7 @@ pub fn main() -> ExitCode {
         Command::Frame(args) => frame::main(&args),
         Command::Evaluate(args) => evaluate::main(args),
         Command::Study(args) => study::main(&args),
+        Command::Export(args) => export::main(&args),
         Command::Tree(command) => tree::main(command),
         Command::Primitives(args) => primitives::main(args),
         Command::Check(args) => check::main(&args),

@@ -9,7 +9,6 @@ use super::claims::{CLAIMS, Claim, Evidence, Scope, Verdict, judge};
 use super::facts::Facts;
 use super::metrics::{metrics, traits};
 use super::provenance::Provenance;
-use super::single::SingleError;
 use super::statistics::{
     Count, Estimate, Interval, fisher, iqm, mann_whitney, mean, probability_of_improvement,
 };
@@ -116,18 +115,6 @@ pub struct Judged {
 }
 
 impl Findings {
-    /// What the runs say that are done.
-    ///
-    /// # Errors
-    /// When a folder holds another run, or a file that cannot be read.
-    pub fn of(study: &Study) -> Result<Self, SingleError> {
-        let mut all = Vec::new();
-        for run in study.runs() {
-            all.extend(Facts::read(study, &run)?);
-        }
-        Ok(Self::from_facts(study, &all))
-    }
-
     /// What these runs say.
     #[must_use]
     pub fn from_facts(study: &Study, all: &[Facts]) -> Self {

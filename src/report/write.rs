@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::document::markdown;
 use super::facts::Facts;
+use super::figures::{FigureError, Number, SourceError, study_figure};
 use super::findings::Findings;
 use super::single::SingleError;
 use super::study::{Study, StudyError};
@@ -33,14 +34,24 @@ pub enum ReportError {
     /// A file cannot be written.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// A figure cannot be made.
+    #[error(transparent)]
+    Source(#[from] SourceError),
     /// A figure cannot be drawn.
-    #[error("{figure}: {message}")]
-    Figure {
-        /// Which.
-        figure: String,
-        /// Why.
-        message: String,
-    },
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+}
+
+/// The facts of all runs that are done.
+///
+/// # Errors
+/// When a folder holds another run, or a file that cannot be read.
+pub fn read_facts(study: &Study) -> Result<Vec<Facts>, SingleError> {
+    let mut all = Vec::new();
+    for run in study.runs() {
+        all.extend(Facts::read(study, &run)?);
+    }
+    Ok(all)
 }
 
 /// Writes the report of the runs that are done to `report/` in the study's folder:
@@ -50,10 +61,7 @@ pub enum ReportError {
 /// # Errors
 /// When a run cannot be read, or a file cannot be written.
 pub fn write_report(study: &Study) -> Result<Written, ReportError> {
-    let mut all = Vec::new();
-    for run in study.runs() {
-        all.extend(Facts::read(study, &run)?);
-    }
+    let all = read_facts(study)?;
     let findings = Findings::from_facts(study, &all);
     let text = markdown(&findings);
     let mut json = serde_json::to_vec_pretty(&findings).unwrap_or_default();
@@ -70,6 +78,19 @@ pub fn write_report(study: &Study) -> Result<Written, ReportError> {
         ("report.json", json),
     ];
     contents.extend(tables.map(|(name, table)| (name, table.csv().into_bytes())));
+    let mut contents: Vec<_> = contents
+        .into_iter()
+        .map(|(name, bytes)| (name.to_owned(), bytes))
+        .collect();
+    for number in Number::ALL.into_iter().filter(|_| !all.is_empty()) {
+        let figure = study_figure(study, &all, number)?;
+        let name = number.name();
+        contents.push((format!("figure-{name}.svg"), figure.svg()?.into_bytes()));
+        contents.push((
+            format!("figure-{name}.csv"),
+            figure.table().csv().into_bytes(),
+        ));
+    }
     let folder = study.folder.join("report");
     let files = contents
         .iter()

@@ -1,0 +1,202 @@
+//! The thesis's figures: what is in them, and how they are drawn, as SVG and as text.
+
+mod layout;
+mod primitives;
+mod run;
+mod study;
+mod svg;
+mod text;
+
+use serde::Serialize;
+
+use super::table::Table;
+
+pub use layout::{Sketch, SketchNode};
+pub use run::{RunSource, SourceError};
+pub use study::study_figure;
+
+/// The figures that there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Number {
+    /// Action values of the primitive subtasks over the angle to their target.
+    F4_3,
+    /// Hierarchies obtained.
+    F4_5,
+    /// Structural difference to the best, generation by generation.
+    F4_7,
+    /// Fitness of the better half, generation by generation.
+    F4_8,
+    /// The best hierarchy of selected generations.
+    F4_9,
+    /// Selection probabilities, generation by generation.
+    F4_10,
+}
+
+impl Number {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::F4_3,
+        Self::F4_5,
+        Self::F4_7,
+        Self::F4_8,
+        Self::F4_9,
+        Self::F4_10,
+    ];
+
+    /// As the thesis numbers it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F4_3 => "4.3",
+            Self::F4_5 => "4.5",
+            Self::F4_7 => "4.7",
+            Self::F4_8 => "4.8",
+            Self::F4_9 => "4.9",
+            Self::F4_10 => "4.10",
+        }
+    }
+}
+
+impl std::str::FromStr for Number {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|number| number.name() == text);
+        let allowed = Self::ALL.map(Self::name).join(", ");
+        found.ok_or_else(|| format!("found {text:?}; allowed: {allowed}"))
+    }
+}
+
+/// A figure: what it shows, whatever it is drawn with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// Its number in the thesis.
+    pub number: &'static str,
+    /// What it shows.
+    pub title: String,
+    /// Runs, seeds, version and command that made it.
+    pub provenance: String,
+    /// Its panels.
+    pub panels: Vec<Panel>,
+}
+
+/// A part of a figure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Panel {
+    /// Lines.
+    Chart(Chart),
+    /// A hierarchy.
+    Tree(Sketch),
+}
+
+/// Lines over a common axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Chart {
+    /// What it shows.
+    pub title: String,
+    /// What is on the horizontal axis, with its unit.
+    pub x: String,
+    /// What is on the vertical axis, with its unit.
+    pub y: String,
+    /// The lines.
+    pub series: Vec<Series>,
+}
+
+/// A line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Series {
+    /// Its name.
+    pub name: String,
+    /// Its points.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A figure could not be drawn.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("figure {number}: {message}")]
+pub struct FigureError {
+    /// Which.
+    pub number: &'static str,
+    /// Why.
+    pub message: String,
+}
+
+impl Figure {
+    /// As SVG.
+    ///
+    /// # Errors
+    /// When it has nothing to draw.
+    pub fn svg(&self) -> Result<String, FigureError> {
+        svg::draw(self).map_err(|message| FigureError {
+            number: self.number,
+            message,
+        })
+    }
+
+    /// As text for a terminal of this many columns.
+    #[must_use]
+    pub fn text(&self, columns: usize) -> String {
+        text::draw(self, columns)
+    }
+
+    /// Its numbers as a tidy table, one row a point; hierarchies as text.
+    #[must_use]
+    pub fn table(&self) -> Table {
+        let mut table = Table::new(&[
+            "figure", "panel", "series", "x_is", "x", "y_is", "y", "made_by",
+        ]);
+        for panel in &self.panels {
+            match panel {
+                Panel::Chart(chart) => {
+                    for series in &chart.series {
+                        for (x, y) in &series.points {
+                            table.rows.push(vec![
+                                self.number.to_owned(),
+                                chart.title.clone(),
+                                series.name.clone(),
+                                chart.x.clone(),
+                                x.to_string(),
+                                chart.y.clone(),
+                                y.to_string(),
+                                self.provenance.clone(),
+                            ]);
+                        }
+                    }
+                }
+                Panel::Tree(sketch) => table.rows.push(vec![
+                    self.number.to_owned(),
+                    sketch.caption.clone(),
+                    sketch.text.clone(),
+                    String::new(),
+                    String::new(),
+                    String::new(),
+                    String::new(),
+                    self.provenance.clone(),
+                ]),
+            }
+        }
+        table
+    }
+}
+
+impl Chart {
+    /// The ranges of both axes; none without a finite point.
+    fn ranges(&self) -> Option<[(f64, f64); 2]> {
+        let points = || self.series.iter().flat_map(|series| &series.points);
+        let finite = || points().filter(|(x, y)| x.is_finite() && y.is_finite());
+        let range = |of: fn(&(f64, f64)) -> f64| {
+            let values = || finite().map(of);
+            let (low, high) = (
+                values().fold(f64::INFINITY, f64::min),
+                values().fold(f64::NEG_INFINITY, f64::max),
+            );
+            match high - low {
+                width if width > 0.0 => (low, high),
+                _ => (low - 0.5, high + 0.5),
+            }
+        };
+        finite().next()?;
+        Some([range(|point| point.0), range(|point| point.1)])
+    }
+}

@@ -1,0 +1,93 @@
+//! Figure 4.3: what the primitive subtasks have learned, over the one reading that they
+//! look at.
+
+use std::path::Path;
+
+use super::{Chart, Series};
+use crate::evolution::Experiment;
+use crate::files::read_text;
+use crate::lab::{Checkpoint, SetupError, WorldTask, with_world};
+use crate::learning::Skill;
+use crate::scenario::Scenario;
+use crate::worlds::{Kind, Probe, World};
+
+/// Points of a line.
+const POINTS: usize = 121;
+
+/// Largest checkpoint that is read, in bytes.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// A chart for every primitive subtask that looks at a single reading.
+///
+/// # Errors
+/// When the scenario cannot be made ready.
+pub(super) fn action_values(
+    scenario: &Scenario,
+    folder: &Path,
+) -> Result<Result<Vec<Chart>, String>, SetupError> {
+    with_world(scenario.clone(), OfCheckpoint(folder))
+}
+
+struct OfCheckpoint<'f>(&'f Path);
+
+impl WorldTask for OfCheckpoint<'_> {
+    type Output = Result<Vec<Chart>, String>;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        let file = self.0.join("checkpoint.json");
+        let text =
+            read_text(&file, MAX_BYTES).map_err(|error| format!("checkpoint.json: {error}"))?;
+        let state = Checkpoint::from_text(&text)
+            .and_then(|checkpoint| checkpoint.state(&experiment))
+            .map_err(|error| format!("checkpoint.json: {error}"))?;
+        let charts = state
+            .skills
+            .all()
+            .iter()
+            .filter_map(|skill| chart(&experiment, skill));
+        Ok(charts.collect())
+    }
+}
+
+fn chart<W: World>(experiment: &Experiment<W>, skill: &Skill) -> Option<Chart> {
+    let catalogue = experiment.catalogue();
+    let subtask = catalogue.subtask(skill.subtask);
+    let [axis] = catalogue.maps[subtask.map.index()].axes() else {
+        return None;
+    };
+    let probes = experiment.world.probes(skill.subtask);
+    let (first, last) = (probes.first()?, probes.last()?);
+    let (name, _) = first.readings.first()?;
+    let input = |probe: &Probe<W::Percept>| probe.percept.as_ref().get(axis.input).copied();
+    let reading = |probe: &Probe<W::Percept>| probe.readings.first().map(|(_, value)| *value);
+    let [from, to] = [
+        (input(first)?, reading(first)?),
+        (input(last)?, reading(last)?),
+    ];
+    let Kind::Primitive { actions } = &subtask.kind else {
+        return None;
+    };
+    let mut lines = vec![Vec::with_capacity(POINTS); actions.len()];
+    let mut percept = first.percept.as_ref().to_vec();
+    for point in 0..POINTS {
+        let share = point as f64 / (POINTS - 1) as f64;
+        percept[axis.input] = from.0 + (to.0 - from.0) * share as f32;
+        let x = from.1 + (to.1 - from.1) * share;
+        let values = skill.action_values(&experiment.encoder, &percept);
+        for (line, value) in lines.iter_mut().zip(values) {
+            line.push((x, f64::from(value)));
+        }
+    }
+    let series = actions.iter().zip(lines).enumerate();
+    Some(Chart {
+        title: subtask.name.to_owned(),
+        x: name.replace('_', " "),
+        y: String::from("Q"),
+        series: series
+            .map(|(index, (action, points))| Series {
+                name: format!("action {} {action}", index + 1),
+                points,
+            })
+            .collect(),
+    })
+}

@@ -1,0 +1,267 @@
+//! The figures of one run.
+
+use std::path::{Path, PathBuf};
+
+use super::primitives::action_values;
+use super::{Chart, Figure, Number, Panel, Series, Sketch};
+use crate::evolution::{Experiment, GenerationRecord, read_tree};
+use crate::lab::{Event, Recording, RunError, SetupError, WorldTask, with_world};
+use crate::scenario::Scenario;
+use crate::worlds::World;
+
+/// Hierarchies in Figure 4.9.
+const SELECTED_GENERATIONS: usize = 8;
+
+/// A run that is read from its folder.
+#[derive(Clone, Debug)]
+pub struct RunSource {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// Its scenario.
+    pub scenario: Scenario,
+    /// Its seed.
+    pub seed: u64,
+    /// Version and commit of the program that did it.
+    pub version: String,
+    /// Its generations.
+    pub records: Vec<GenerationRecord>,
+}
+
+/// Why a figure cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum SourceError {
+    /// The run cannot be read.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Its scenario cannot be made ready.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The run has no generation yet.
+    #[error("{folder}: no generation has lived yet; allowed: a run that has one")]
+    Empty {
+        /// The folder.
+        folder: String,
+    },
+    /// A part of the run is not what it should be.
+    #[error("{folder}: {message}")]
+    Misfit {
+        /// The folder.
+        folder: String,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+impl RunSource {
+    /// Reads the run in a folder.
+    ///
+    /// # Errors
+    /// When it holds no run, or none with a generation.
+    pub fn read(folder: &Path) -> Result<Self, SourceError> {
+        let recording = Recording::read(folder)?;
+        let started = &recording.manifest.started;
+        let source = Self {
+            folder: folder.to_owned(),
+            version: format!("{} ({})", started.version, started.commit),
+            seed: recording.manifest.seed,
+            scenario: recording.manifest.scenario,
+            records: recording
+                .events
+                .into_iter()
+                .filter_map(|event| match event {
+                    Event::Generation(record) => Some(*record),
+                    _ => None,
+                })
+                .collect(),
+        };
+        match source.records.is_empty() {
+            false => Ok(source),
+            true => Err(SourceError::Empty {
+                folder: folder.display().to_string(),
+            }),
+        }
+    }
+
+    /// Where what is made of the run comes from.
+    #[must_use]
+    pub fn provenance(&self, command: &str) -> String {
+        let generations = self.records.len();
+        format!(
+            "Run of {}, seed {}, {generations} generations, maxq-lab {}; {command}",
+            self.scenario.name, self.seed, self.version
+        )
+    }
+
+    /// A figure of the run.
+    ///
+    /// # Errors
+    /// When the run does not hold what the figure shows.
+    pub fn figure(&self, number: Number) -> Result<Figure, SourceError> {
+        let command = format!("maxq-lab export RUN_DIR --figure {}", number.name());
+        let (title, panels) = match number {
+            Number::F4_3 => (
+                String::from("Action values of the primitive subtasks"),
+                self.action_values()?,
+            ),
+            Number::F4_5 => (
+                String::from("Hierarchy obtained"),
+                self.hierarchies(&[self.last()])?,
+            ),
+            Number::F4_7 => (
+                String::from("Structural difference to the best hierarchy"),
+                vec![Panel::Chart(self.differences())],
+            ),
+            Number::F4_8 => (
+                String::from("Performance of the better half of the population"),
+                vec![Panel::Chart(self.performance())],
+            ),
+            Number::F4_9 => (
+                String::from("The best hierarchy of selected generations"),
+                self.hierarchies(&self.selected())?,
+            ),
+            Number::F4_10 => (
+                String::from("Selection probabilities of the primitive subtasks"),
+                self.probabilities(),
+            ),
+        };
+        Ok(Figure {
+            number: number.name(),
+            title: format!("{title}, {}", self.scenario.name),
+            provenance: self.provenance(&command),
+            panels,
+        })
+    }
+
+    fn last(&self) -> usize {
+        self.records.len() - 1
+    }
+
+    /// Generations from the first to the last, at about the same distance.
+    fn selected(&self) -> Vec<usize> {
+        let count = SELECTED_GENERATIONS.min(self.records.len());
+        let at = |index: usize| index * self.last() / (count - 1).max(1);
+        (0..count).map(at).collect()
+    }
+
+    fn differences(&self) -> Chart {
+        let points = self
+            .records
+            .iter()
+            .map(|r| (r.generation as f64, r.mean_difference));
+        Chart {
+            title: String::from("Mean difference of the better half to the best"),
+            x: String::from("generation"),
+            y: String::from("structural difference (points)"),
+            series: vec![Series {
+                name: String::from("mean difference"),
+                points: points.collect(),
+            }],
+        }
+    }
+
+    fn performance(&self) -> Chart {
+        let ranks = self
+            .records
+            .first()
+            .map_or(0, |record| record.individuals.len() / 2);
+        let series = (1..=ranks.max(1)).map(|rank| Series {
+            name: format!("rank {rank}"),
+            points: self
+                .records
+                .iter()
+                .filter_map(|r| Some((r.generation as f64, r.mean_trial_steps(rank)?)))
+                .collect(),
+        });
+        Chart {
+            title: String::from("Fitness by rank"),
+            x: String::from("generation"),
+            y: String::from("mean trial length (time steps)"),
+            series: series.collect(),
+        }
+    }
+
+    fn probabilities(&self) -> Vec<Panel> {
+        let types = self
+            .records
+            .first()
+            .map_or(0, |r| r.selection_probabilities.len());
+        (0..types)
+            .map(|index| Panel::Chart(self.probabilities_in(index)))
+            .collect()
+    }
+
+    fn probabilities_in(&self, state_type: usize) -> Chart {
+        let of = |record: &GenerationRecord| {
+            record
+                .selection_probabilities
+                .get(state_type)
+                .cloned()
+                .flatten()
+        };
+        let names = self.records.first().and_then(of).unwrap_or_default();
+        // A primitive subtask that is never selected has no line.
+        let series = names.keys().map(|name| Series {
+            name: name.clone(),
+            points: self
+                .records
+                .iter()
+                .filter_map(|record| Some((record.generation as f64, *of(record)?.get(name)?)))
+                .collect(),
+        });
+        Chart {
+            title: format!("State type {}", state_type + 1),
+            x: String::from("generation"),
+            y: String::from("probability of selection"),
+            series: series
+                .filter(|s| s.points.iter().any(|(_, p)| *p > 0.0))
+                .collect(),
+        }
+    }
+
+    fn hierarchies(&self, generations: &[usize]) -> Result<Vec<Panel>, SourceError> {
+        let best = |index: &usize| {
+            let record = self.records.get(*index)?;
+            let best = record.individuals.first()?;
+            let steps = record.mean_trial_steps(1)?;
+            let caption = format!(
+                "Generation {}: {steps:.0} time steps a trial",
+                record.generation
+            );
+            Some((caption, best.tree.clone()))
+        };
+        let trees = generations.iter().filter_map(best).collect();
+        let sketches = with_world(self.scenario.clone(), Sketches(trees))?;
+        let sketches = sketches.map_err(|message| self.misfit(message))?;
+        Ok(sketches.into_iter().map(Panel::Tree).collect())
+    }
+
+    fn action_values(&self) -> Result<Vec<Panel>, SourceError> {
+        let charts = action_values(&self.scenario, &self.folder)?;
+        let charts = charts.map_err(|message| self.misfit(message))?;
+        Ok(charts.into_iter().map(Panel::Chart).collect())
+    }
+
+    fn misfit(&self, message: String) -> SourceError {
+        SourceError::Misfit {
+            folder: self.folder.display().to_string(),
+            message,
+        }
+    }
+}
+
+/// Captions and texts of hierarchies, to be laid out.
+pub(super) struct Sketches(pub(super) Vec<(String, String)>);
+
+impl WorldTask for Sketches {
+    type Output = Result<Vec<Sketch>, String>;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        let catalogue = experiment.catalogue();
+        let depth = experiment.scenario.evolution.maximum_depth;
+        let sketches = self.0.into_iter().map(|(caption, text)| {
+            let tree = read_tree(&text, catalogue, depth).map_err(|error| error.to_string())?;
+            Ok(Sketch::of(caption, &tree, catalogue))
+        });
+        sketches.collect()
+    }
+}

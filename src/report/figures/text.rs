@@ -1,0 +1,88 @@
+//! Figures as text in a terminal.
+
+use std::fmt::Write;
+
+use super::{Chart, Figure, Panel};
+use crate::hierarchy::Glyphs;
+use crate::report::table::short;
+
+/// Lines of a chart.
+const HEIGHT: usize = 16;
+/// Columns of the numbers at the vertical axis.
+const MARGIN: usize = 9;
+/// Fewest columns that a chart is drawn with.
+const MIN_COLUMNS: usize = 30;
+/// What points are drawn with, series by series.
+const SIGNS: &[u8] = b"123456789abcdefghijklmnopqrstuvwxyz";
+
+/// The figure, panel below panel.
+pub(super) fn draw(figure: &Figure, columns: usize) -> String {
+    let mut text = format!("Figure {}: {}\n", figure.number, figure.title);
+    for panel in &figure.panels {
+        text.push('\n');
+        match panel {
+            Panel::Chart(chart) => text += &draw_chart(chart, columns),
+            Panel::Tree(sketch) => {
+                let [unicode, ascii] = &sketch.lines;
+                let lines = match Glyphs::of_locale() {
+                    Glyphs::Unicode => unicode,
+                    Glyphs::Ascii => ascii,
+                };
+                // Writing to a string cannot fail.
+                let _ = writeln!(text, "{}\n{}", sketch.caption, lines.join("\n"));
+            }
+        }
+    }
+    text + "\n" + &figure.provenance + "\n"
+}
+
+fn draw_chart(chart: &Chart, columns: usize) -> String {
+    let Some([(left, right), (bottom, top)]) = chart.ranges() else {
+        return format!("{}\n(no data)\n", chart.title);
+    };
+    let width = columns.max(MIN_COLUMNS) - MARGIN - 2;
+    let mut grid = vec![vec![b' '; width]; HEIGHT];
+    let place = |value: f64, low: f64, high: f64, cells: usize| {
+        (((value - low) / (high - low) * (cells - 1) as f64).round() as usize).min(cells - 1)
+    };
+    // The first series is drawn last, so that it lies on top.
+    for (index, series) in chart.series.iter().enumerate().rev() {
+        let sign = SIGNS[index % SIGNS.len()];
+        for &(x, y) in series
+            .points
+            .iter()
+            .filter(|(x, y)| x.is_finite() && y.is_finite())
+        {
+            let row = HEIGHT - 1 - place(y, bottom, top, HEIGHT);
+            grid[row][place(x, left, right, width)] = sign;
+        }
+    }
+    let mut text = format!("{}\n{}\n", chart.title, chart.y);
+    for (index, row) in grid.iter().enumerate() {
+        let share = 1.0 - index as f64 / (HEIGHT - 1) as f64;
+        let label = match index % 5 {
+            0 => short(bottom + share * (top - bottom)),
+            _ => String::new(),
+        };
+        let _ = writeln!(
+            text,
+            "{label:>MARGIN$} |{}",
+            String::from_utf8_lossy(row).trim_end()
+        );
+    }
+    let _ = writeln!(text, "{:>MARGIN$} +{}", "", "-".repeat(width));
+    let (left, right) = (short(left), short(right));
+    let gap = width.saturating_sub(left.len() + right.len());
+    let _ = writeln!(text, "{:>MARGIN$}  {left}{:gap$}{right}", "", "");
+    let _ = writeln!(text, "{:>MARGIN$}  {}", "", chart.x);
+    for (index, series) in chart.series.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "{:>MARGIN$}  {} {}",
+            "",
+            char::from(SIGNS[index % SIGNS.len()]),
+            series.name
+        );
+    }
+    text
+}

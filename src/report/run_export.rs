@@ -1,0 +1,159 @@
+//! A run as tables and text.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::figures::{RunSource, SourceError};
+use super::table::{Table, short};
+use crate::evolution::{Experiment, GenerationRecord, Origin, read_tree};
+use crate::hierarchy::to_dot;
+use crate::lab::{SetupError, WorldTask, with_world};
+use crate::worlds::World;
+
+/// The command, as it is named in what it makes.
+const COMMAND: &str = "maxq-lab export RUN_DIR";
+
+/// One row an individual of a generation.
+#[must_use]
+pub fn individuals(run: &RunSource) -> Table {
+    let mut table = Table::new(&[
+        "scenario",
+        "seed",
+        "generation",
+        "rank",
+        "id",
+        "origin",
+        "fitness_steps",
+        "mean_trial_steps",
+        "delivered_trials",
+        "scored_trials",
+        "composites",
+        "primitives",
+        "structural_difference_to_best",
+        "tree",
+        "version",
+        "command",
+    ]);
+    for record in &run.records {
+        for individual in &record.individuals {
+            let delivered = individual
+                .trials
+                .iter()
+                .filter(|trial| trial.delivered)
+                .count();
+            table.rows.push(vec![
+                run.scenario.name.clone(),
+                run.seed.to_string(),
+                record.generation.to_string(),
+                individual.rank.to_string(),
+                individual.id.to_string(),
+                origin(&individual.origin).to_owned(),
+                individual.fitness_steps.to_string(),
+                (individual.fitness_steps as f64 / individual.trials.len() as f64).to_string(),
+                delivered.to_string(),
+                individual.trials.len().to_string(),
+                individual.composites.to_string(),
+                individual.primitives.len().to_string(),
+                individual.difference_to_best.to_string(),
+                individual.tree.clone(),
+                run.version.clone(),
+                COMMAND.to_owned(),
+            ]);
+        }
+    }
+    table
+}
+
+fn origin(origin: &Origin) -> &'static str {
+    match origin {
+        Origin::HandCoded => "hand_coded",
+        Origin::Random => "random",
+        Origin::Reproduced => "reproduced",
+        Origin::Crossover { .. } => "crossover",
+        Origin::Copied { .. } => "copied",
+    }
+}
+
+/// The run's generations and what they come from.
+///
+/// # Errors
+/// When serialisation fails.
+pub fn json(run: &RunSource) -> Result<String, serde_json::Error> {
+    #[derive(Serialize)]
+    struct Whole<'r> {
+        made_by: String,
+        scenario: &'r crate::scenario::Scenario,
+        seed: u64,
+        generations: &'r [GenerationRecord],
+    }
+    let whole = Whole {
+        made_by: run.provenance(COMMAND),
+        scenario: &run.scenario,
+        seed: run.seed,
+        generations: &run.records,
+    };
+    Ok(serde_json::to_string_pretty(&whole)? + "\n")
+}
+
+/// The run in short, for people.
+///
+/// # Errors
+/// When the run has no best hierarchy.
+pub fn markdown(run: &RunSource) -> Result<String, SourceError> {
+    let mut table = Table::new(&[
+        "generation",
+        "best (time steps a trial)",
+        "middle (time steps a trial)",
+        "structural difference",
+        "best hierarchy",
+    ]);
+    for record in &run.records {
+        let steps = |rank| {
+            record
+                .mean_trial_steps(rank)
+                .map_or_else(String::new, short)
+        };
+        let best = record.individuals.first();
+        table.rows.push(vec![
+            record.generation.to_string(),
+            steps(1),
+            steps((record.individuals.len() / 2).max(1)),
+            short(record.mean_difference),
+            best.map_or_else(String::new, |best| format!("`{}`", best.tree)),
+        ]);
+    }
+    let mut text = format!("# {}, seed {}\n\n", run.scenario.name, run.seed);
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{}.\n\n{}", run.provenance(COMMAND), table.markdown());
+    Ok(text)
+}
+
+/// The best hierarchy of the last generation, for Graphviz.
+///
+/// # Errors
+/// When the scenario cannot be made ready.
+pub fn dot(run: &RunSource) -> Result<String, SetupError> {
+    let best = run
+        .records
+        .last()
+        .and_then(|record| record.individuals.first());
+    let tree = best.map(|best| best.tree.clone()).unwrap_or_default();
+    let dot = with_world(run.scenario.clone(), Dot(&tree))?;
+    Ok(format!("// {}\n{dot}", run.provenance(COMMAND)))
+}
+
+/// A hierarchy as DOT; nothing where it is none.
+pub(super) struct Dot<'t>(pub(super) &'t str);
+
+impl WorldTask for Dot<'_> {
+    type Output = String;
+
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> String {
+        let catalogue = experiment.catalogue();
+        let depth = experiment.scenario.evolution.maximum_depth;
+        let tree = read_tree(self.0, catalogue, depth);
+        tree.map(|tree| to_dot(&tree, catalogue))
+            .unwrap_or_default()
+    }
+}
