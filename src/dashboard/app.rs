@@ -266,6 +266,8 @@ impl App {
             Action::Faster => desk.stage.change_speed(true),
             Action::Slower => desk.stage.change_speed(false),
             Action::Restart => desk.stage.restart(),
+            Action::NextTrial => desk.stage.next_trial(),
+            Action::Mark => desk.mark(),
             Action::Theme => {
                 desk.look.next_theme();
                 let theme = desk.look.theme().to_owned();

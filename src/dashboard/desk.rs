@@ -91,6 +91,8 @@ pub struct Desk {
     pub size: (u16, u16),
     /// The individual that is shown.
     pub chosen: Chosen,
+    /// The individual that others are compared with, if the person has named one.
+    pub marked: Option<u64>,
     /// The panel of the overview that keys act on.
     pub focus: ViewId,
     /// Time that has gone by, the sum of all ticks.
@@ -128,6 +130,7 @@ impl Desk {
             keys,
             size: (80, 24),
             chosen: Chosen::Best,
+            marked: None,
             focus: ViewId::Arena,
             clock: Duration::ZERO,
             pace: Pace::default(),
@@ -290,6 +293,26 @@ impl Desk {
             Chosen::Id(id) => individuals.iter().find(|individual| individual.id == id),
         };
         chosen.or_else(|| individuals.first())
+    }
+
+    /// Keeps the selected individual to compare others with.
+    pub fn mark(&mut self) {
+        if let Some(id) = self.selected().map(|individual| individual.id) {
+            self.marked = Some(id);
+            self.say(format!(
+                "individual {id} is marked: others are compared with it"
+            ));
+        }
+    }
+
+    /// The individual of the generation shown that the selected one is compared with: the
+    /// marked one, else the best, else the second.
+    #[must_use]
+    pub fn rival(&self) -> Option<&RankedRecord> {
+        let (selected, individuals) = (self.selected()?, &self.shown()?.individuals);
+        let mut others = individuals.iter().filter(|other| other.id != selected.id);
+        let marked = others.clone().find(|other| Some(other.id) == self.marked);
+        marked.or_else(|| others.next())
     }
 
     /// The hierarchy of an individual; `None` where its text is none of this world.

@@ -1,5 +1,6 @@
 //! The stage: a rollout of the individual that is looked at.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -26,6 +27,9 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Most time steps between two frames.
 const MOST_STEPS: u32 = 5_000;
 
+/// Time steps that are recorded.
+const RECORDED: usize = 500;
+
 /// Whose rollout it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subject {
@@ -45,7 +49,8 @@ pub struct Stage {
     refused: Option<(u64, String)>,
     subject: Option<Subject>,
     rollout: Option<Box<dyn Rollout>>,
-    trace: Option<Box<StepTrace>>,
+    /// Steps that were recorded, the latest first.
+    traces: VecDeque<StepTrace>,
     number: u64,
     halted: bool,
     speed: usize,
@@ -63,7 +68,7 @@ impl Stage {
             refused: None,
             subject: None,
             rollout: None,
-            trace: None,
+            traces: VecDeque::new(),
             number: 0,
             halted: false,
             speed: FIRST_SPEED,
@@ -103,10 +108,17 @@ impl Stage {
         self.rollout.as_deref()
     }
 
-    /// The time step that was taken last, if it was taken alone.
+    /// A time step with everything that decided it, the last but some: of a rollout that
+    /// runs, one step a frame is recorded.
     #[must_use]
-    pub fn trace(&self) -> Option<&StepTrace> {
-        self.trace.as_deref()
+    pub fn trace(&self, back: usize) -> Option<&StepTrace> {
+        self.traces.get(back)
+    }
+
+    /// How many steps are recorded.
+    #[must_use]
+    pub fn traces(&self) -> usize {
+        self.traces.len()
     }
 
     /// Why there is nothing on the stage.
@@ -127,6 +139,12 @@ impl Stage {
         self.owed = 0.0;
     }
 
+    /// Halts the rollout.
+    pub fn halt(&mut self) {
+        self.halted = true;
+        self.owed = 0.0;
+    }
+
     /// Speed of the rollout: times real time.
     #[must_use]
     pub fn speed(&self) -> u32 {
@@ -143,10 +161,15 @@ impl Stage {
 
     /// Halts the rollout and takes one time step, with everything that decided it.
     pub fn step(&mut self) {
-        self.halted = true;
-        self.owed = 0.0;
-        if let Some(rollout) = &mut self.rollout {
-            self.trace = rollout.step().map(Box::new);
+        self.halt();
+        self.record();
+    }
+
+    fn record(&mut self) {
+        let trace = self.rollout.as_mut().and_then(|rollout| rollout.step());
+        if let Some(trace) = trace {
+            self.traces.truncate(RECORDED - 1);
+            self.traces.push_front(trace);
         }
     }
 
@@ -159,7 +182,6 @@ impl Stage {
 
     /// Gives the present trial up and begins the next.
     pub fn next_trial(&mut self) {
-        self.trace = None;
         if let Some(rollout) = &mut self.rollout {
             rollout.begin_trial();
         }
@@ -229,7 +251,7 @@ impl Stage {
             .specimen()
             .map(|specimen| bench.rollout(specimen, number));
         self.rollout = rollout;
-        self.trace = None;
+        self.traces.clear();
         self.owed = 0.0;
         self.shown_for = Duration::ZERO;
         self.held_for = Duration::ZERO;
@@ -238,7 +260,7 @@ impl Stage {
     /// Lets time go by. Whether anything has changed.
     pub(super) fn tick(&mut self, elapsed: Duration) -> bool {
         let speed = self.speed();
-        let (false, Some(rollout)) = (self.halted, &mut self.rollout) else {
+        let (false, Some(rollout)) = (self.halted, &self.rollout) else {
             return false;
         };
         self.shown_for += elapsed;
@@ -251,16 +273,25 @@ impl Stage {
         }
         let step_s = self.bench.scenery().time_step_s.unwrap_or(NOMINAL_STEP_S);
         self.owed += elapsed.as_secs_f64() * f64::from(speed) / step_s;
-        let mut left = (self.owed as u32).min(MOST_STEPS);
-        if left == 0 {
+        let steps = (self.owed as u32).min(MOST_STEPS);
+        if steps == 0 {
             return false;
         }
-        self.trace = None;
         self.owed = self.owed.fract();
-        while left > 0 {
-            rollout.advance(1);
-            left -= 1;
-            if speed <= UNHURRIED && rollout.status().ended.is_some() {
+        if speed > UNHURRIED {
+            if let Some(rollout) = &mut self.rollout {
+                rollout.advance(steps - 1);
+            }
+            self.record();
+            return true;
+        }
+        for _ in 0..steps {
+            self.record();
+            if self
+                .traces
+                .front()
+                .is_some_and(|trace| trace.ended.is_some())
+            {
                 break;
             }
         }

@@ -76,7 +76,7 @@ use Scope::{Everywhere, ExportMenu, In, Question};
 use ViewId as V;
 
 /// Views that show the rollout.
-const STAGES: &[ViewId] = &[V::Overview, V::Arena, V::Hierarchy];
+const STAGES: &[ViewId] = &[V::Overview, V::Arena, V::Hierarchy, V::Stepper];
 
 actions! {
     /// Show or hide this help.
@@ -115,10 +115,18 @@ actions! {
     ViewPopulation = "view-population", Everywhere, ["6"], "population";
     /// What the run is doing, in full.
     ViewStatus = "view-status", Everywhere, ["7"], "status";
+    /// The selected individual, taken apart.
+    ViewInspector = "view-inspector", Everywhere, ["8", "i"], "inspect";
+    /// What the selected individual would do all over the arena.
+    ViewMap = "view-map", Everywhere, ["9", "m"], "policy map";
+    /// One time step, taken apart.
+    ViewStepper = "view-stepper", Everywhere, ["0", "t"], "stepper";
+    /// Two individuals side by side.
+    ViewCompare = "view-compare", Everywhere, ["c"], "compare";
     /// The next panel.
-    NextPanel = "next-panel", In(&[V::Overview]), ["tab"], "panel";
+    NextPanel = "next-panel", In(&[V::Overview, V::Inspector]), ["tab"], "panel";
     /// The panel before.
-    PreviousPanel = "previous-panel", In(&[V::Overview]), ["shift-tab"], "panel";
+    PreviousPanel = "previous-panel", In(&[V::Overview, V::Inspector]), ["shift-tab"], "panel";
     /// Open the panel that has the focus.
     Open = "open", Everywhere, ["enter"], "open";
 
@@ -165,12 +173,22 @@ actions! {
     Halt = "halt", In(STAGES), ["space"], "halt";
     /// One time step of the rollout.
     StepRollout = "step-rollout", In(STAGES), ["."], "time step";
+    /// One recorded time step back.
+    StepBack = "step-back", In(&[V::Stepper]), [","], "step back";
     /// The rollout faster.
     Faster = "faster", In(STAGES), ["+", "="], "faster";
     /// The rollout slower.
     Slower = "slower", In(STAGES), ["-"], "slower";
     /// A new rollout from another start.
     Restart = "restart", In(STAGES), ["r"], "new rollout";
+
+    /// Give this trial up and begin the next.
+    NextTrial = "next-trial", In(STAGES), ["N"], "next trial";
+
+    /// Keep the selected individual to compare others with.
+    Mark = "mark", Everywhere, ["M"], "mark";
+    /// Draw something else: another quantity, values instead of the policy.
+    Mode = "mode", In(&[V::Inspector, V::PolicyMap]), ["v"], "values";
 
     /// The next theme.
     Theme = "theme", Everywhere, ["T"], "theme";
@@ -216,6 +234,10 @@ impl Action {
             Self::ViewPolicy => V::Policy,
             Self::ViewPopulation => V::Population,
             Self::ViewStatus => V::Status,
+            Self::ViewInspector => V::Inspector,
+            Self::ViewMap => V::PolicyMap,
+            Self::ViewStepper => V::Stepper,
+            Self::ViewCompare => V::Compare,
             _ => return None,
         })
     }

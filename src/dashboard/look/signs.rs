@@ -63,6 +63,14 @@ pub struct Signs {
     pub series: [&'static str; 3],
     /// The cursor in time.
     pub cursor: &'static str,
+    /// Between what was and what came of it.
+    pub becomes: &'static str,
+    /// Temperature.
+    pub tau: &'static str,
+    /// The probability of a random choice.
+    pub epsilon: &'static str,
+    /// Degrees.
+    pub degrees: &'static str,
 }
 
 /// Unicode signs, one column wide each.
@@ -95,6 +103,10 @@ pub static UNICODE: Signs = Signs {
     separator: "·",
     series: ["●", "○", "×"],
     cursor: "│",
+    becomes: "→",
+    tau: "τ",
+    epsilon: "ε",
+    degrees: "°",
 };
 
 const ASCII_BORDER: border::Set<'static> = border::Set {
@@ -138,6 +150,10 @@ pub static ASCII: Signs = Signs {
     separator: "|",
     series: ["*", "o", "x"],
     cursor: "|",
+    becomes: "->",
+    tau: "T",
+    epsilon: "epsilon",
+    degrees: " deg",
 };
 
 impl Signs {

@@ -92,7 +92,7 @@ pub(in crate::dashboard) fn in_proportion(area: Rect, extent: [f64; 2]) -> Rect 
 }
 
 /// Draws the world and, if there is one, the agent in it.
-fn draw_scene(
+pub(super) fn draw_scene(
     desk: &Desk,
     scenery: &Scenery,
     snapshot: Option<&Snapshot>,
@@ -156,7 +156,13 @@ fn shade_sight(
     }
 }
 
-fn draw_mark(look: &Look, canvas: &Canvas<'_>, mark: &Mark, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw_mark(
+    look: &Look,
+    canvas: &Canvas<'_>,
+    mark: &Mark,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
     let signs = look.signs;
     let (sign, paint) = match mark.role {
         Role::Goal => (signs.goal, Paint::Goal),

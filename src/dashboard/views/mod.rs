@@ -4,12 +4,17 @@
 //! overview, where they get a corner. They draw what fits.
 
 mod arena;
+mod compare;
 mod fitness;
 mod hierarchy;
+mod inspector;
+mod lines;
 mod overview;
 mod policy;
+mod policy_map;
 mod population;
 mod status;
+mod stepper;
 
 use std::str::FromStr;
 
@@ -42,6 +47,14 @@ pub enum ViewId {
     Population,
     /// What the run is doing.
     Status,
+    /// An individual: its tree, what it has learned, where it comes from.
+    Inspector,
+    /// What an individual would do all over the arena.
+    PolicyMap,
+    /// One time step of the rollout.
+    Stepper,
+    /// Two individuals side by side.
+    Compare,
 }
 
 /// A view's name for the command line, and its title.
@@ -53,6 +66,10 @@ const VIEWS: &[(ViewId, &str, &str)] = &[
     (ViewId::Policy, "policy", "Policy"),
     (ViewId::Population, "population", "Population"),
     (ViewId::Status, "status", "Status"),
+    (ViewId::Inspector, "inspector", "Inspector"),
+    (ViewId::PolicyMap, "policy-map", "Policy map"),
+    (ViewId::Stepper, "stepper", "Trial stepper"),
+    (ViewId::Compare, "compare", "Comparison"),
 ];
 
 /// A name that no view has.
@@ -87,7 +104,15 @@ impl ViewId {
 
     /// Whether it shows what the individual on the stage does or has learned.
     pub(super) fn needs_stage(self) -> bool {
-        matches!(self, Self::Arena | Self::Hierarchy)
+        matches!(
+            self,
+            Self::Arena
+                | Self::Hierarchy
+                | Self::Inspector
+                | Self::PolicyMap
+                | Self::Stepper
+                | Self::Compare
+        )
     }
 
     /// Its title.
@@ -159,6 +184,10 @@ fn make(id: ViewId) -> Box<dyn View> {
         ViewId::Policy => Box::new(policy::Policy),
         ViewId::Population => Box::new(population::Population::default()),
         ViewId::Status => Box::new(status::Status),
+        ViewId::Inspector => Box::new(inspector::Inspector::default()),
+        ViewId::PolicyMap => Box::new(policy_map::Map::default()),
+        ViewId::Stepper => Box::new(stepper::Stepper::default()),
+        ViewId::Compare => Box::new(compare::Compare::default()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What an individual would do all over the arena.
 
 use crate::learning::Policy;
-use crate::random::{Purpose, stream};
+use crate::random::{Purpose, Stream, stream};
 use crate::worlds::scene::Scenic;
 use crate::worlds::{StateType, SubtaskId};
 
@@ -73,6 +73,8 @@ pub(super) fn policy_map<W: Scenic>(
 ) -> PolicyMap {
     let extent = world.scenery().extent;
     let MapView { columns, rows, .. } = view;
+    // The same noise everywhere: what differs from cell to cell is the place.
+    let rng = stream(seed, 0, 0, Purpose::PolicyMap);
     let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
     let cells = cells.map(|[column, row]| {
         let share = |index: usize, count: usize| (index as f64 + 0.5) / count as f64;
@@ -80,8 +82,7 @@ pub(super) fn policy_map<W: Scenic>(
             extent[0] * share(column, columns),
             extent[1] * (1.0 - share(row, rows)),
         ];
-        let number = row * columns + column;
-        policy_cell(world, policy, view, at, [seed, number as u64])
+        policy_cell(world, policy, view, at, rng.clone())
     });
     PolicyMap {
         view,
@@ -94,10 +95,9 @@ fn policy_cell<W: Scenic>(
     policy: &mut Policy<'_>,
     view: MapView,
     at: [f64; 2],
-    [seed, number]: [u64; 2],
+    mut rng: Stream,
 ) -> Option<PolicyCell> {
     let catalogue = world.catalogue();
-    let mut rng = stream(seed, 0, number, Purpose::PolicyMap);
     let mut totals = vec![0.0; catalogue.primitives().count()];
     let (mut value, mut state_type) = (0.0, catalogue.terminal());
     for _ in 0..SAMPLES {

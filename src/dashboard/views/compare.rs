@@ -1,0 +1,310 @@
+//! Two individuals side by side.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use super::View;
+use super::lines::{Pen, draw_lines, percent};
+use crate::dashboard::desk::{Chosen, Desk};
+use crate::dashboard::input::Effect;
+use crate::dashboard::keys::Action;
+use crate::dashboard::look::{Paint, fitted, put, width};
+use crate::evolution::RankedRecord;
+use crate::hierarchy::{Tree, draw, structural_difference, to_dot};
+use crate::lab::specimen::Specimen;
+use crate::learning::SelectionProbabilities;
+use crate::worlds::SubtaskId;
+
+/// The selected individual beside the marked one, with what the one has and the other has
+/// not.
+///
+/// ```text
+///  ╭ Comparison  structural difference -3 ────────────────────────────────╮
+///  │ individual 362, the selected one   individual 340, the marked one     │
+///  │ rank 1   128.6 steps               rank 4   141.2 steps               │
+///  │   Root                               Root                             │
+///  │   ├─ FindBattery                     ├─ FindBattery                   │
+///  │ + │  └─ Avoid                      + │  └─ Wander                     │
+///  ╰───────────────────────────────────────────────────────────────────────╯
+/// ```
+#[derive(Default)]
+pub(super) struct Compare {
+    /// Selection probabilities of the two.
+    selection: Option<Selections>,
+}
+
+struct Selections {
+    generation: u64,
+    ids: [u64; 2],
+    of: [SelectionProbabilities; 2],
+}
+
+/// One of the two.
+struct Side<'d> {
+    record: &'d RankedRecord,
+    tree: Tree,
+    /// For each node whether the other has not its like.
+    unlike: Vec<bool>,
+    selection: Option<&'d SelectionProbabilities>,
+}
+
+impl Compare {
+    fn sides<'d>(&'d self, desk: &'d Desk) -> Option<[Side<'d>; 2]> {
+        let records = [desk.selected()?, desk.rival()?];
+        let [one, other] = [desk.tree(records[0])?, desk.tree(records[1])?];
+        let unlike = [unlike(&one, &other), unlike(&other, &one)];
+        let known = self
+            .selection
+            .as_ref()
+            .filter(|known| known.ids == records.map(|r| r.id));
+        let [first, second] = unlike;
+        Some([
+            Side {
+                record: records[0],
+                tree: one,
+                unlike: first,
+                selection: known.map(|known| &known.of[0]),
+            },
+            Side {
+                record: records[1],
+                tree: other,
+                unlike: second,
+                selection: known.map(|known| &known.of[1]),
+            },
+        ])
+    }
+}
+
+/// For each node of a tree whether the other tree has not its like: a composite subtask
+/// that is nowhere in it, a child more often than under the same composite there. These
+/// are the terms of the structural difference (Thesis 4.5.2).
+fn unlike(tree: &Tree, other: &Tree) -> Vec<bool> {
+    let parent = |tree: &Tree, node: usize| tree.nodes()[node].parent.map(|p| tree.subtask(p));
+    let mut left: BTreeMap<(Option<SubtaskId>, SubtaskId), usize> = BTreeMap::new();
+    let mut anywhere: BTreeMap<SubtaskId, usize> = BTreeMap::new();
+    for node in 0..other.nodes().len() {
+        let subtask = other.subtask(node);
+        *left.entry((parent(other, node), subtask)).or_default() += 1;
+        *anywhere.entry(subtask).or_default() += 1;
+    }
+    (0..tree.nodes().len())
+        .map(|node| {
+            let subtask = tree.subtask(node);
+            if tree.children(node).next().is_some() {
+                return !anywhere.contains_key(&subtask);
+            }
+            match left.get_mut(&(parent(tree, node), subtask)) {
+                Some(count) if *count > 0 => {
+                    *count -= 1;
+                    false
+                }
+                _ => true,
+            }
+        })
+        .collect()
+}
+
+impl Side<'_> {
+    fn lines(&self, desk: &Desk, role: &str, other: &Self) -> Vec<Line<'static>> {
+        let look = &desk.look;
+        let record = self.record;
+        let steps = record.fitness_steps as f64 / record.trials.len().max(1) as f64;
+        let head = format!("individual {}, {role}", record.id);
+        let delivered = record.trials.iter().filter(|trial| trial.delivered).count();
+        let facts = [
+            format!("rank {}, {steps:.1} steps a trial", record.rank),
+            format!("{delivered} of {} trials done", record.trials.len()),
+            format!(
+                "{} composite, {} primitive subtasks",
+                record.composites,
+                record.primitives.len()
+            ),
+        ];
+        let mut lines = vec![Pen::new(look).text(head, Paint::Title).line()];
+        lines.extend(facts.map(|fact| Pen::new(look).text(fact, Paint::Text).line()));
+        lines.push(Line::default());
+        let drawn = draw(&self.tree, desk.catalogue(), look.signs.tree);
+        for (line, unlike) in drawn.into_iter().zip(&self.unlike) {
+            let (sign, paint) = match unlike {
+                true => ("+ ", Paint::Notice),
+                false => ("  ", Paint::Text),
+            };
+            lines.push(Pen::new(look).text(sign, paint).text(line, paint).line());
+        }
+        lines.push(Line::default());
+        lines.extend(self.selection_lines(desk, other));
+        lines
+    }
+
+    /// Selection probabilities, marked where they are far from the other's.
+    fn selection_lines(&self, desk: &Desk, other: &Self) -> Vec<Line<'static>> {
+        let look = &desk.look;
+        let Some(selection) = self.selection else {
+            return Vec::new();
+        };
+        let mut lines = vec![Pen::new(look).text("selects", Paint::Dim).line()];
+        for (index, of) in selection.iter().enumerate() {
+            let Some(of) = of else { continue };
+            let theirs = other.selection.and_then(|all| all.get(index)?.as_ref());
+            let mut pen = Pen::new(look).text(format!("{} ", index + 1), Paint::Title);
+            for (place, primitive) in desk.catalogue().primitives().enumerate() {
+                let share = of[place];
+                let far = theirs.is_some_and(|theirs| (theirs[place] - share).abs() >= 0.1);
+                if share < 0.005 && !far {
+                    continue;
+                }
+                let (sign, paint) = match far {
+                    true => ("+", Paint::Notice),
+                    false => (" ", Paint::Text),
+                };
+                let name = desk.catalogue().subtask(primitive).name;
+                pen = pen.text(format!("{sign}{name} {}  ", percent(share)), paint);
+            }
+            lines.push(pen.line());
+        }
+        lines
+    }
+}
+
+impl View for Compare {
+    fn caption(&self, desk: &Desk) -> String {
+        let Some([one, other]) = self.sides(desk) else {
+            return String::new();
+        };
+        let difference = structural_difference(&one.tree, &other.tree, desk.catalogue());
+        match difference {
+            0 => String::from("the same structure"),
+            _ => format!("structural difference {difference}"),
+        }
+    }
+
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+        let look = &desk.look;
+        let Some([one, other]) = self.sides(desk) else {
+            let text = fitted(
+                "no two individuals have lived yet",
+                area.width.into(),
+                look.signs,
+            );
+            put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
+            return;
+        };
+        let role = match desk.marked == Some(other.record.id) {
+            true => "the marked one",
+            false => "the best of the others",
+        };
+        let half = area.width / 2;
+        let sides = [
+            (0, one.lines(desk, "the selected one", &other)),
+            (half, other.lines(desk, role, &one)),
+        ];
+        for (x, lines) in sides {
+            let side = Rect {
+                x: area.x + x + 1,
+                width: half.saturating_sub(2),
+                height: area.height.saturating_sub(1),
+                ..area
+            };
+            draw_lines(look, &lines, 0, side, buffer);
+        }
+        let key = desk
+            .keys
+            .hint(Action::Mark)
+            .map_or(String::new(), |(key, _)| key);
+        let note =
+            format!("+ has what the other has not   {key} marks the selected one for comparison");
+        let row = area.height.saturating_sub(1);
+        if area.height > 3 && width(&note) < usize::from(area.width) {
+            put(buffer, area, (1, row), &note, look.style(Paint::Dim));
+        }
+    }
+
+    fn hints(&self) -> &'static [Action] {
+        &[
+            Action::Down,
+            Action::Up,
+            Action::Mark,
+            Action::Best,
+            Action::ViewInspector,
+        ]
+    }
+
+    /// The selected individual changes by rank.
+    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
+        let by = match action {
+            Action::Up => -1,
+            Action::Down => 1,
+            _ => return None,
+        };
+        let record = desk.shown()?;
+        let here = desk.selected()?.rank.saturating_sub(1);
+        let next = here.saturating_add_signed(by);
+        if let Some(individual) = record.individuals.get(next) {
+            desk.chosen = Chosen::Id(individual.id);
+        }
+        Some(Vec::new())
+    }
+
+    fn prepare(&mut self, desk: &Desk) {
+        let Some((one, other)) = desk.selected().zip(desk.rival()) else {
+            return;
+        };
+        let Some(state) = desk.stage.population() else {
+            return;
+        };
+        let ids = [one.id, other.id];
+        let known = self.selection.as_ref();
+        let fresh =
+            known.is_some_and(|known| known.generation == state.generation && known.ids == ids);
+        if fresh {
+            return;
+        }
+        let specimens = ids.map(|id| Specimen::with_id(state, id));
+        let [Some(one), Some(other)] = specimens else {
+            self.selection = None;
+            return;
+        };
+        self.selection = Some(Selections {
+            generation: state.generation,
+            ids,
+            of: [one, other].map(|specimen| desk.bench.selection(specimen)),
+        });
+    }
+
+    fn csv(&self, desk: &Desk) -> Option<String> {
+        let sides = self.sides(desk)?;
+        let mut csv = String::from("individual,rank,node,parent,subtask,only_here\n");
+        for side in &sides {
+            for (node, unlike) in side.unlike.iter().enumerate() {
+                let parent = side.tree.nodes()[node].parent;
+                // Writing to a string cannot fail.
+                let _ = writeln!(
+                    csv,
+                    "{},{},{node},{},{},{}",
+                    side.record.id,
+                    side.record.rank,
+                    parent.map_or(String::new(), |parent| parent.to_string()),
+                    desk.catalogue().subtask(side.tree.subtask(node)).name,
+                    u8::from(*unlike)
+                );
+            }
+        }
+        Some(csv)
+    }
+
+    fn dot(&self, desk: &Desk) -> Option<String> {
+        Some(to_dot(&desk.tree(desk.selected()?)?, desk.catalogue()))
+    }
+
+    fn lesson(&self) -> &'static str {
+        "The selected individual beside another: the marked one, or the best of the others.\n\
+         What one has and the other has not is marked +: a composite subtask, or a primitive\n\
+         child more often under the same composite. These are the terms of the structural\n\
+         difference (Thesis 4.5.2). Selection probabilities are marked where they differ by\n\
+         more than a tenth."
+    }
+}

@@ -1,0 +1,349 @@
+//! The inspector: the selected individual, taken apart.
+
+mod ancestry;
+mod chart;
+mod selection;
+mod values;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use super::View;
+use super::lines::{Pen, draw_lines, last_start, number};
+use crate::dashboard::desk::Desk;
+use crate::dashboard::input::Effect;
+use crate::dashboard::keys::Action;
+use crate::dashboard::look::{Paint, fitted, put, width};
+use crate::dashboard::stage::Subject;
+use crate::hierarchy::{draw, to_dot};
+use crate::lab::specimen::{Lineage, Profile, lineage};
+use crate::learning::SelectionProbabilities;
+use values::Shelf;
+
+/// Size from which on all pages are shown at once.
+const ROOMY: (u16, u16) = (110, 32);
+
+/// The selected individual: its tree, the learned values of the subtask under the cursor,
+/// its selection probabilities, and where it comes from.
+///
+/// ```text
+///  ╭ Inspector  individual 362, generation 26 ──────────────────────────╮
+///  │ ▸ Root          τ 0.41 │ ▸Values   Selection   Lineage              │
+///  │   ├─ FindBattery τ ... │ C~+V over surroundings, state type 1 (1/4) │
+///  │   │  └─ Avoid          │                 FindBattery   Wander       │
+///  │   └─ ApproachBattery   │ open               ▸ -3.21    -5.40        │
+///  ╰─────────────────────────────────────────────────────────────────────╯
+/// ```
+#[derive(Default)]
+pub(super) struct Inspector {
+    node: usize,
+    page: Page,
+    scroll: usize,
+    shelf: Shelf,
+    known: Option<Known>,
+}
+
+/// What is shown beside the tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Page {
+    #[default]
+    Values,
+    Selection,
+    Lineage,
+}
+
+impl Page {
+    const ALL: [Self; 3] = [Self::Values, Self::Selection, Self::Lineage];
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::Values => "Values",
+            Self::Selection => "Selection",
+            Self::Lineage => "Lineage",
+        }
+    }
+
+    fn turned(self, by: usize) -> Self {
+        let here = Self::ALL.iter().position(|&page| page == self);
+        Self::ALL[(here.unwrap_or(0) + by) % Self::ALL.len()]
+    }
+}
+
+/// What has been worked out, and for whom.
+struct Known {
+    subject: Subject,
+    node: usize,
+    profiles: Vec<Profile>,
+    selection: SelectionProbabilities,
+    lineage: Option<Lineage>,
+}
+
+impl Inspector {
+    fn tree_lines(&self, desk: &Desk) -> Vec<Line<'static>> {
+        let look = &desk.look;
+        let Some(specimen) = desk.stage.specimen() else {
+            return Vec::new();
+        };
+        let hierarchy = &specimen.individual.hierarchy;
+        let drawn = draw(hierarchy.tree(), desk.catalogue(), look.signs.tree);
+        let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 2;
+        let values = drawn.into_iter().zip(hierarchy.values()).enumerate();
+        values
+            .map(|(node, (line, values))| {
+                let here = node == self.node;
+                let (sign, paint) = match (here, values.is_some()) {
+                    (true, _) => (look.signs.pointer, Paint::Selected),
+                    (false, true) => (" ", Paint::Title),
+                    (false, false) => (" ", Paint::Text),
+                };
+                let pen = Pen::new(look).text(format!("{sign} "), paint);
+                let pen = pen.cell(&line, room, paint);
+                match values {
+                    Some(values) => {
+                        let tau = format!("{} {}", look.signs.tau, number(values.temperature));
+                        pen.text(tau, Paint::Dim).line()
+                    }
+                    None => pen.line(),
+                }
+            })
+            .collect()
+    }
+
+    fn page_lines(&self, desk: &Desk, page: Page, columns: usize) -> Vec<Line<'static>> {
+        let Some(known) = &self.known else {
+            return Vec::new();
+        };
+        match page {
+            Page::Values => Vec::new(),
+            Page::Selection => selection::lines(desk, &known.selection, columns),
+            Page::Lineage => match &known.lineage {
+                Some(lineage) => ancestry::lines(desk, lineage, columns),
+                None => Vec::new(),
+            },
+        }
+    }
+
+    /// Draws a page below a line with its title.
+    fn draw_page(&self, desk: &Desk, page: Page, area: Rect, buffer: &mut Buffer) {
+        let Some(known) = &self.known else { return };
+        let inside = Rect {
+            y: area.y + area.height.min(1),
+            height: area.height.saturating_sub(1),
+            ..area
+        };
+        match page {
+            Page::Values => self.shelf.draw(desk, &known.profiles, inside, buffer),
+            _ => {
+                let lines = self.page_lines(desk, page, inside.width.into());
+                let scroll = if page == self.page { self.scroll } else { 0 };
+                draw_lines(&desk.look, &lines, scroll, inside, buffer);
+            }
+        }
+    }
+
+    /// Everything at once.
+    fn draw_roomy(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+        let [left, right] = columns(area, 2 * area.width / 5);
+        let tree = u16::try_from(self.tree_lines(desk).len()).unwrap_or(u16::MAX);
+        let [above, selection] = rows(left, (tree + 1).min(left.height / 2));
+        let [values, lineage] = rows(right, right.height * 3 / 5);
+        draw_lines(&desk.look, &self.tree_lines(desk), 0, above, buffer);
+        for (page, area) in [
+            (Page::Values, values),
+            (Page::Selection, selection),
+            (Page::Lineage, lineage),
+        ] {
+            title(desk, page, page == self.page, area, buffer);
+            self.draw_page(desk, page, area, buffer);
+        }
+    }
+
+    /// The tree and one page.
+    fn draw_narrow(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+        let lines = self.tree_lines(desk);
+        let widest = lines.iter().map(Line::width).max().unwrap_or(0);
+        let tree = u16::try_from(widest)
+            .unwrap_or(u16::MAX)
+            .min(area.width * 2 / 5);
+        let [left, right] = columns(area, tree + 1);
+        let skipped = self.node.saturating_sub(usize::from(left.height / 2));
+        draw_lines(&desk.look, &lines, skipped, left, buffer);
+        let mut column = 0;
+        for page in Page::ALL {
+            let area = Rect {
+                x: right.x + column,
+                width: right.width.saturating_sub(column),
+                ..right
+            };
+            column += title(desk, page, page == self.page, area, buffer) + 1;
+        }
+        self.draw_page(desk, self.page, right, buffer);
+    }
+
+    fn is_roomy(area: Rect) -> bool {
+        area.width >= ROOMY.0 - 2 && area.height >= ROOMY.1 - 4
+    }
+}
+
+/// Writes the title of a page; returns its columns.
+fn title(desk: &Desk, page: Page, has_focus: bool, area: Rect, buffer: &mut Buffer) -> u16 {
+    let (sign, paint) = match has_focus {
+        true => (desk.look.signs.pointer, Paint::Focus),
+        false => (" ", Paint::Title),
+    };
+    let text = format!("{sign}{}", page.title());
+    put(buffer, area, (0, 0), &text, desk.look.style(paint))
+}
+
+/// Two columns with a gap, the left one so wide.
+fn columns(area: Rect, left: u16) -> [Rect; 2] {
+    let left = left.min(area.width);
+    let gap = 2.min(area.width - left);
+    [
+        Rect {
+            width: left,
+            ..area
+        },
+        Rect {
+            x: area.x + left + gap,
+            width: area.width - left - gap,
+            ..area
+        },
+    ]
+}
+
+/// Two rows with a gap, the upper one so high.
+fn rows(area: Rect, above: u16) -> [Rect; 2] {
+    let above = above.min(area.height);
+    let gap = 1.min(area.height - above);
+    [
+        Rect {
+            height: above,
+            ..area
+        },
+        Rect {
+            y: area.y + above + gap,
+            height: area.height - above - gap,
+            ..area
+        },
+    ]
+}
+
+impl View for Inspector {
+    fn caption(&self, desk: &Desk) -> String {
+        let subject = desk.stage.subject();
+        subject.map_or(String::new(), |subject| {
+            format!(
+                "individual {}, generation {}",
+                subject.id, subject.generation
+            )
+        })
+    }
+
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+        if self.known.is_none() {
+            let look = &desk.look;
+            let text = desk
+                .stage
+                .refused()
+                .unwrap_or("no individual has lived yet");
+            let text = fitted(text, usize::from(area.width), look.signs);
+            put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
+        } else if Self::is_roomy(area) {
+            self.draw_roomy(desk, area, buffer);
+        } else {
+            self.draw_narrow(desk, area, buffer);
+        }
+    }
+
+    fn hints(&self) -> &'static [Action] {
+        &[
+            Action::Down,
+            Action::Up,
+            Action::Mode,
+            Action::NextPanel,
+            Action::ViewCompare,
+        ]
+    }
+
+    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
+        let scrolls = self.page == Page::Lineage;
+        let nodes = desk.stage.tree().map_or(1, |tree| tree.nodes().len());
+        match action {
+            Action::NextPanel => self.page = self.page.turned(1),
+            Action::PreviousPanel => self.page = self.page.turned(Page::ALL.len() - 1),
+            Action::Up if scrolls => self.scroll = self.scroll.saturating_sub(1),
+            Action::Down if scrolls => self.scroll += 1,
+            Action::PageUp => self.scroll = self.scroll.saturating_sub(10),
+            Action::PageDown => self.scroll += 10,
+            Action::Up => self.node = self.node.saturating_sub(1),
+            Action::Down => self.node = (self.node + 1).min(nodes - 1),
+            Action::Top => self.node = 0,
+            Action::Bottom => self.node = nodes - 1,
+            Action::Mode => self.shelf.next_quantity(),
+            Action::Left => self.shelf.turn(-1),
+            Action::Right => self.shelf.turn(1),
+            _ => return None,
+        }
+        Some(Vec::new())
+    }
+
+    fn prepare(&mut self, desk: &Desk) {
+        let Some((specimen, subject)) = desk.stage.specimen().zip(desk.stage.subject()) else {
+            self.known = None;
+            return;
+        };
+        let nodes = specimen.individual.hierarchy.tree().nodes().len();
+        self.node = self.node.min(nodes.saturating_sub(1));
+        let lines = self.page_lines(desk, self.page, desk.size.0.into()).len();
+        self.scroll = self.scroll.min(last_start(lines, 3));
+        let same = self.known.as_ref().filter(|known| known.subject == subject);
+        if same.is_some_and(|known| known.node == self.node) {
+            return;
+        }
+        let profiles = desk.bench.profiles(specimen, self.node);
+        self.shelf.fit(&profiles);
+        if let Some(known) = self.known.as_mut().filter(|known| known.subject == subject) {
+            known.profiles = profiles;
+            known.node = self.node;
+            return;
+        }
+        let records = desk.model().generations();
+        let until = records
+            .iter()
+            .take_while(|record| record.generation <= subject.generation);
+        self.known = Some(Known {
+            subject,
+            node: self.node,
+            profiles,
+            selection: desk.bench.selection(specimen),
+            lineage: lineage(until.map(|record| &**record), subject.id),
+        });
+    }
+
+    fn csv(&self, desk: &Desk) -> Option<String> {
+        let known = self.known.as_ref()?;
+        Some(match self.page {
+            Page::Values => values::csv(&known.profiles),
+            Page::Selection => selection::csv(desk, &known.selection),
+            Page::Lineage => ancestry::csv(known.lineage.as_ref()?),
+        })
+    }
+
+    fn dot(&self, desk: &Desk) -> Option<String> {
+        match self.page {
+            Page::Lineage => Some(ancestry::dot(self.known.as_ref()?.lineage.as_ref()?)),
+            _ => Some(to_dot(desk.stage.tree()?, desk.catalogue())),
+        }
+    }
+
+    fn lesson(&self) -> &'static str {
+        "An individual, taken apart. Move along its tree. Values: what the subtask under the\n\
+         cursor has learned - Q of a primitive subtask's actions (Thesis Figure 4.3); C~, C, V\n\
+         of a composite one's children, and C~+V, which it chooses by - over the inputs it\n\
+         looks at. Selection: in which primitive subtask its policy ends, for each state type.\n\
+         Lineage: how it was made, back to the start: inherited from whom, and what was reset,\n\
+         because it stood above the crossover site (Thesis 3.2)."
+    }
+}

@@ -1,0 +1,151 @@
+//! Lines of styled text, longer lists than an area has rows, and numbers in columns.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+
+use crate::dashboard::look::{Look, Paint, fitted, width};
+
+/// A line under construction: pieces of text, each with a paint.
+pub(super) struct Pen<'l> {
+    look: &'l Look,
+    spans: Vec<Span<'static>>,
+    column: usize,
+}
+
+impl<'l> Pen<'l> {
+    /// An empty line.
+    pub(super) fn new(look: &'l Look) -> Self {
+        Self {
+            look,
+            spans: Vec::new(),
+            column: 0,
+        }
+    }
+
+    /// Columns used so far.
+    pub(super) fn column(&self) -> usize {
+        self.column
+    }
+
+    /// Adds a text.
+    pub(super) fn text(mut self, text: impl Into<String>, paint: Paint) -> Self {
+        let text = text.into();
+        self.column += width(&text);
+        self.spans.push(Span::styled(text, self.look.style(paint)));
+        self
+    }
+
+    /// Adds blanks up to a column.
+    pub(super) fn to(self, column: usize) -> Self {
+        let blanks = column.saturating_sub(self.column);
+        match blanks {
+            0 => self,
+            _ => self.text(" ".repeat(blanks), Paint::Text),
+        }
+    }
+
+    /// Adds a text cut or filled up to some columns.
+    pub(super) fn cell(self, text: &str, columns: usize, paint: Paint) -> Self {
+        let end = self.column + columns;
+        let text = fitted(text, columns, self.look.signs);
+        self.text(text, paint).to(end)
+    }
+
+    /// Adds a text that ends after some columns, one blank before it.
+    pub(super) fn right(self, text: &str, columns: usize, paint: Paint) -> Self {
+        let start = self.column + columns.saturating_sub(width(text));
+        self.to(start).text(text, paint)
+    }
+
+    /// Adds a horizontal bar: a share of some columns.
+    pub(super) fn bar(self, share: f64, columns: usize, paint: Paint) -> Self {
+        let filled = (share.clamp(0.0, 1.0) * columns as f64).round() as usize;
+        let sign = self.look.signs.filled;
+        let end = self.column + columns;
+        self.text(sign.repeat(filled), paint).to(end)
+    }
+
+    /// The line.
+    pub(super) fn line(self) -> Line<'static> {
+        Line::from(self.spans)
+    }
+}
+
+/// Draws lines from one on, as many as there is room for; says where some are left out.
+pub(super) fn draw_lines(
+    look: &Look,
+    lines: &[Line<'_>],
+    from: usize,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let area = area.intersection(buffer.area);
+    let from = from.min(last_start(lines.len(), area.height));
+    for (row, line) in lines.iter().skip(from).take(area.height.into()).enumerate() {
+        buffer.set_line(area.x, area.y + row as u16, line, area.width);
+    }
+    let below = lines.len().saturating_sub(from + usize::from(area.height));
+    for (more, row, sign) in [
+        (from, 0, look.signs.order[0]),
+        (below, area.height.saturating_sub(1), look.signs.order[1]),
+    ] {
+        if more > 0 && area.width > 12 && area.height > 1 {
+            let text = format!(" {sign} {more} more ");
+            let at = area.right().saturating_sub(width(&text) as u16);
+            buffer.set_string(at, area.y + row, &text, look.style(Paint::Key));
+        }
+    }
+}
+
+/// The last line from which a list still fills its rows.
+pub(super) fn last_start(lines: usize, rows: u16) -> usize {
+    lines.saturating_sub(usize::from(rows))
+}
+
+/// A value in at most eight columns.
+pub(super) fn number(value: f32) -> String {
+    let size = value.abs();
+    let text = match value {
+        _ if !value.is_finite() => String::from("none"),
+        _ if size < 99.9995 => format!("{value:.3}"),
+        _ if size < 9999.95 => format!("{value:.1}"),
+        _ => format!("{value:.1e}"),
+    };
+    // What rounds to nothing has no sign.
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_owned(),
+        _ => text,
+    }
+}
+
+/// A probability as a percentage in four columns.
+pub(super) fn percent(probability: f64) -> String {
+    let percent = probability * 100.0;
+    match percent {
+        p if p > 0.0 && p < 1.0 => String::from("<1 %"),
+        p if p < 100.0 && p > 99.0 => String::from("99 %"),
+        p => format!("{p:.0} %"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_have_no_idle_signs() {
+        assert_eq!(number(-0.0001), "0.000");
+        assert_eq!(number(-12.34567), "-12.346");
+        assert_eq!(number(-1234.56), "-1234.6");
+        assert_eq!(number(1.0e7), "1.0e7");
+        for value in [f32::MAX, f32::MIN, f32::NAN, f32::MIN_POSITIVE] {
+            assert!(number(value).len() <= 8);
+        }
+        assert_eq!(
+            (percent(0.001), percent(0.9999)),
+            ("<1 %".into(), "99 %".into())
+        );
+        assert_eq!((percent(0.0), percent(1.0)), ("0 %".into(), "100 %".into()));
+    }
+}

@@ -1,0 +1,355 @@
+//! What the selected individual would do all over the arena.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Modifier;
+use ratatui::text::Line;
+
+use super::View;
+use super::arena::{draw_mark, in_proportion};
+use super::lines::{Pen, draw_lines, number, percent};
+use crate::dashboard::desk::Desk;
+use crate::dashboard::input::Effect;
+use crate::dashboard::keys::Action;
+use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put};
+use crate::dashboard::stage::Subject;
+use crate::lab::specimen::{MapView, PolicyCell, PolicyMap};
+use crate::worlds::Catalogue;
+
+/// Headings that keys go through.
+const HEADINGS: usize = 24;
+/// Columns of the legend.
+const LEGEND: u16 = 34;
+/// A primitive subtask less probable than this is written small.
+const CLEAR: f64 = 2.0 / 3.0;
+
+/// The arena, each place with the letter of the primitive subtask that the selected
+/// individual would most probably end in there, for a heading and a load that keys turn.
+///
+/// ```text
+///  ╭ Policy map  individual 362 ──────────────╮
+///  │ ⡏⠉⠉⠉⠉⠉⠉⠉⠉⠉⢹  heading 45° ↗  carrying │
+///  │ ⡇AAAAAWWWNN⢸  A Avoid          61 %      │
+///  │ ⡇AAAAwwNNNN⢸  N ApproachNest   22 %      │
+///  │ ⣇⣀⣀⣀⣀⣀⣀⣀⣀⣀⣸  small: less than 2 in 3   │
+///  ╰──────────────────────────────────────────╯
+/// ```
+#[derive(Default)]
+pub(super) struct Map {
+    /// In steps of a turn divided by [`HEADINGS`].
+    heading: usize,
+    variant: usize,
+    by_value: bool,
+    made: Option<Made>,
+}
+
+/// A map with what it was made for.
+struct Made {
+    subject: Subject,
+    map: PolicyMap,
+}
+
+impl Map {
+    fn heading(&self) -> f64 {
+        let heading = self.heading as f64 / HEADINGS as f64 * TAU;
+        if heading > PI { heading - TAU } else { heading }
+    }
+
+    fn map(&self) -> Option<&PolicyMap> {
+        self.made.as_ref().map(|made| &made.map)
+    }
+
+    /// What stands for a cell: a digit or a letter, and how it is painted.
+    fn sign(&self, desk: &Desk, cell: &PolicyCell, range: [f32; 2]) -> (char, Paint) {
+        if self.by_value {
+            let [low, high] = range;
+            let share = (cell.value - low) / (high - low).max(f32::MIN_POSITIVE);
+            let level = (share * 10.0).clamp(0.0, 9.0) as u32;
+            let paint = match level {
+                0..=2 => Paint::Worst,
+                3..=6 => Paint::Median,
+                _ => Paint::Best,
+            };
+            return (char::from_digit(level, 10).unwrap_or(' '), paint);
+        }
+        let mut primitives = desk.catalogue().primitives();
+        let place = primitives.position(|primitive| primitive == cell.primitive);
+        let place = place.unwrap_or(0);
+        let letter = letters(desk.catalogue()).get(place).copied().unwrap_or('?');
+        let letter = match cell.probability >= CLEAR {
+            true => letter,
+            false => letter.to_ascii_lowercase(),
+        };
+        (letter, Paint::series(place))
+    }
+
+    fn legend(&self, desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
+        let look = &desk.look;
+        let key = |action| desk.keys.hint(action).map_or(String::new(), |(key, _)| key);
+        let mut lines = Vec::new();
+        if desk.scenery().grid.is_none() {
+            let degrees = self.heading().to_degrees().round();
+            let eighth = (self.heading / (HEADINGS / 8)) % 8;
+            let text = format!(
+                "heading {degrees:.0}{} {}",
+                look.signs.degrees, look.signs.headings[eighth]
+            );
+            let keys = format!("{} {}", key(Action::Left), key(Action::Right));
+            lines.push(with_keys(desk, &text, &keys));
+        }
+        let variants = desk.bench.variants();
+        if let Some(variant) = variants.get(self.variant) {
+            let keys = format!("{} {}", key(Action::Up), key(Action::Down));
+            lines.push(with_keys(desk, variant, &keys));
+        }
+        let mode = if self.by_value { "value" } else { "policy" };
+        lines.push(with_keys(desk, mode, &key(Action::Mode)));
+        lines.push(Line::default());
+        match self.by_value {
+            true => lines.extend(value_legend(desk, map)),
+            false => lines.extend(policy_legend(desk, map)),
+        }
+        lines.push(Line::default());
+        lines.extend(type_legend(desk, map));
+        lines
+    }
+}
+
+fn with_keys(desk: &Desk, text: &str, keys: &str) -> Line<'static> {
+    Pen::new(&desk.look)
+        .cell(text, 20, Paint::Title)
+        .text(format!(" {keys}"), Paint::Key)
+        .line()
+}
+
+/// One capital letter for each primitive subtask: the first of its capitals, or else of
+/// its letters, that no other has.
+fn letters(catalogue: &Catalogue) -> Vec<char> {
+    let mut letters: Vec<char> = Vec::new();
+    for primitive in catalogue.primitives() {
+        let name = catalogue.subtask(primitive).name;
+        let capitals = name.chars().filter(char::is_ascii_uppercase);
+        let others = name.chars().map(|c| c.to_ascii_uppercase());
+        let free = capitals
+            .chain(others)
+            .find(|letter| !letters.contains(letter));
+        letters.push(free.unwrap_or('?'));
+    }
+    letters
+}
+
+fn policy_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
+    let catalogue = desk.catalogue();
+    let free = map.cells.iter().flatten().count().max(1);
+    let signs = letters(catalogue).into_iter().zip(catalogue.primitives());
+    let mut lines: Vec<_> = signs
+        .enumerate()
+        .map(|(place, (letter, primitive))| {
+            let cells = map.cells.iter().flatten();
+            let count = cells.filter(|cell| cell.primitive == primitive).count();
+            let share = count as f64 / free as f64;
+            let paint = if count > 0 {
+                Paint::series(place)
+            } else {
+                Paint::Dim
+            };
+            Pen::new(&desk.look)
+                .text(format!("{letter} "), paint)
+                .cell(catalogue.subtask(primitive).name, 17, paint)
+                .right(&percent(share), 6, Paint::Text)
+                .line()
+        })
+        .collect();
+    let note = "small letter: less than 2 in 3";
+    lines.push(Pen::new(&desk.look).text(note, Paint::Dim).line());
+    lines
+}
+
+fn value_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
+    let [low, high] = map.values().unwrap_or_default();
+    let ends = [("0", Paint::Worst, low), ("9", Paint::Best, high)];
+    let head = Pen::new(&desk.look).text("V(root), expected reward", Paint::Dim);
+    let ends = ends.map(|(digit, paint, value)| {
+        Pen::new(&desk.look)
+            .text(format!("{digit} "), paint)
+            .right(&number(value), 9, Paint::Text)
+            .line()
+    });
+    [head.line()].into_iter().chain(ends).collect()
+}
+
+/// How much of the arena each state type is.
+fn type_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
+    let free = map.cells.iter().flatten().count().max(1);
+    let types = desk.catalogue().types();
+    let shares = types.map(|state_type| {
+        let cells = map.cells.iter().flatten();
+        let count = cells.filter(|cell| cell.state_type == state_type).count();
+        (state_type, count)
+    });
+    shares
+        .filter(|(_, count)| *count > 0)
+        .map(|(state_type, count)| {
+            let text = format!("state type {}", state_type.number());
+            Pen::new(&desk.look)
+                .cell(&text, 19, Paint::Dim)
+                .right(&percent(count as f64 / free as f64), 6, Paint::Dim)
+                .line()
+        })
+        .collect()
+}
+
+/// Map and legend.
+fn areas(desk: &Desk, area: Rect) -> (Rect, Rect) {
+    let legend = LEGEND.min(area.width / 2);
+    let room = Rect {
+        width: area.width - legend,
+        ..area
+    };
+    let map = in_proportion(room, desk.scenery().extent);
+    let map = Rect { x: area.x, ..map };
+    let legend = Rect {
+        x: map.right() + 2,
+        width: area.right().saturating_sub(map.right() + 2),
+        ..area
+    };
+    (map, legend)
+}
+
+impl View for Map {
+    fn caption(&self, desk: &Desk) -> String {
+        let subject = desk.stage.subject();
+        subject.map_or(String::new(), |subject| {
+            format!("individual {}", subject.id)
+        })
+    }
+
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+        let look = &desk.look;
+        let Some(map) = self.map() else {
+            let text = desk
+                .stage
+                .refused()
+                .unwrap_or("no individual has lived yet");
+            let text = fitted(text, usize::from(area.width), look.signs);
+            put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
+            return;
+        };
+        let (place, legend) = areas(desk, area);
+        let scenery = desk.scenery();
+        let mut canvas = Canvas::new(look, place, [0.0, 0.0], scenery.extent);
+        let range = map.values().unwrap_or_default();
+        for row in 0..place.height {
+            for column in 0..place.width {
+                let at = canvas.place(column, row);
+                let Some(cell) = cell_at(map, at, scenery.extent) else {
+                    continue;
+                };
+                let (sign, paint) = self.sign(desk, cell, range);
+                let style = look.style(paint);
+                // Shaded where there are colours: letters then need not be everywhere.
+                let shaded = !self.by_value && style.fg.is_some() && cell.probability >= CLEAR;
+                let lettered = !shaded || (column + 4 * (row % 2)) % 8 == 3;
+                let (sign, style) = match (shaded, lettered) {
+                    (true, false) => (' ', style.add_modifier(Modifier::REVERSED)),
+                    (true, true) => (sign, style.add_modifier(Modifier::REVERSED)),
+                    _ => (sign, style),
+                };
+                let text = sign.encode_utf8(&mut [0; 4]).to_owned();
+                put(buffer, place, (column, row), &text, style);
+            }
+        }
+        for [from, to] in &scenery.walls {
+            canvas.line(*from, *to, Layer::Wall, Paint::Wall);
+        }
+        canvas.finish(buffer);
+        let state = desk.stage.rollout().map(|rollout| rollout.snapshot());
+        let moving = state.iter().flat_map(|state| &state.marks);
+        for mark in scenery.places.iter().chain(moving) {
+            draw_mark(look, &canvas, mark, place, buffer);
+        }
+        draw_lines(look, &self.legend(desk, map), 0, legend, buffer);
+    }
+
+    fn hints(&self) -> &'static [Action] {
+        &[Action::Mode, Action::Best, Action::ViewInspector]
+    }
+
+    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
+        let variants = desk.bench.variants().len().max(1);
+        match action {
+            Action::Left => self.heading = (self.heading + 1) % HEADINGS,
+            Action::Right => self.heading = (self.heading + HEADINGS - 1) % HEADINGS,
+            Action::Up => self.variant = (self.variant + variants - 1) % variants,
+            Action::Down => self.variant = (self.variant + 1) % variants,
+            Action::Mode => self.by_value = !self.by_value,
+            _ => return None,
+        }
+        Some(Vec::new())
+    }
+
+    fn prepare(&mut self, desk: &Desk) {
+        let Some((specimen, subject)) = desk.stage.specimen().zip(desk.stage.subject()) else {
+            self.made = None;
+            return;
+        };
+        let (width, height) = desk.size;
+        let inside = Rect::new(0, 0, width.saturating_sub(2), height.saturating_sub(4));
+        let (place, _) = areas(desk, inside);
+        let cells = [place.width, place.height].map(usize::from);
+        let [columns, rows] = desk.scenery().grid.unwrap_or(cells);
+        let view = MapView {
+            heading: self.heading(),
+            variant: self.variant,
+            columns,
+            rows,
+        };
+        let made = self.made.as_ref();
+        if made.is_none_or(|made| made.subject != subject || made.map.view != view) {
+            let map = desk.bench.policy_map(specimen, view);
+            self.made = Some(Made { subject, map });
+        }
+    }
+
+    fn csv(&self, desk: &Desk) -> Option<String> {
+        let map = self.map()?;
+        let [width, height] = desk.scenery().extent;
+        let MapView { columns, rows, .. } = map.view;
+        let mut csv = String::from("x,y,state_type,primitive,probability,value\n");
+        for (index, cell) in map.cells.iter().enumerate() {
+            let Some(cell) = cell else { continue };
+            let x = (index % columns) as f64 + 0.5;
+            let y = (rows - index / columns) as f64 - 0.5;
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                csv,
+                "{},{},{},{},{},{}",
+                x * width / columns as f64,
+                y * height / rows as f64,
+                cell.state_type.number(),
+                desk.catalogue().subtask(cell.primitive).name,
+                cell.probability,
+                cell.value
+            );
+        }
+        Some(csv)
+    }
+
+    fn lesson(&self) -> &'static str {
+        "What the selected individual would do at every place, for one heading and load: its\n\
+         policy is followed from the root down, and the letter is that of the primitive subtask\n\
+         that it most probably ends in. As values: V(root), from 0, the lowest, to 9. Where the\n\
+         body has no room nothing is drawn."
+    }
+}
+
+/// The cell of the map at a place.
+fn cell_at(map: &PolicyMap, at: [f64; 2], extent: [f64; 2]) -> Option<&PolicyCell> {
+    let MapView { columns, rows, .. } = map.view;
+    let column = (at[0] / extent[0] * columns as f64) as usize;
+    let row = ((1.0 - at[1] / extent[1]) * rows as f64) as usize;
+    map.cell(column, row)
+}

@@ -1,0 +1,108 @@
+//! A time step as a table.
+
+use std::fmt::Write;
+
+use super::Shown;
+
+/// One number a line: what it is of, and its value.
+pub(super) fn csv(shown: &Shown<'_>) -> String {
+    let trace = shown.trace;
+    let mut csv = String::from("trial,step,node,subtask,item,quantity,value\n");
+    let mut add = |node: usize, item: &str, quantity: &str, value: String| {
+        let subtask = shown.name(node);
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            csv,
+            "{},{},{node},{subtask},{},{quantity},{value}",
+            trace.trial,
+            trace.step,
+            quoted(item)
+        );
+    };
+    for level in &trace.explanation.levels {
+        add(level.node, "", "temperature", level.temperature.to_string());
+        for choice in &level.choices {
+            let name = shown.name(choice.node);
+            for (quantity, value) in [
+                ("v", choice.value),
+                ("c_tilde", choice.c_tilde),
+                ("c", choice.c),
+                ("probability", choice.probability),
+            ] {
+                add(level.node, name, quantity, value.to_string());
+            }
+        }
+        let active = shown.name(level.active);
+        add(
+            level.node,
+            active,
+            "chosen",
+            u8::from(level.chose).to_string(),
+        );
+    }
+    let action = &trace.explanation.action;
+    let values = action.values.iter().zip(&action.probabilities);
+    for (label, (value, probability)) in shown.actions(action.node).iter().zip(values) {
+        add(action.node, label, "q", value.to_string());
+        add(action.node, label, "probability", probability.to_string());
+    }
+    if let Some(label) = shown.actions(action.node).get(action.chosen) {
+        add(action.node, label, "chosen", String::from("1"));
+    }
+    add(
+        action.node,
+        "",
+        "reward",
+        trace.explanation.reward.to_string(),
+    );
+    for lesson in &trace.explanation.lessons {
+        let child = shown.name(lesson.child);
+        add(
+            lesson.node,
+            child,
+            "pseudo_reward",
+            lesson.pseudo_reward.to_string(),
+        );
+        for (quantity, value) in [
+            ("c_tilde_before", lesson.c_tilde.before),
+            ("c_tilde_after", lesson.c_tilde.after),
+            ("c_before", lesson.c.before),
+            ("c_after", lesson.c.after),
+        ] {
+            add(lesson.node, child, quantity, value.to_string());
+        }
+        for update in &lesson.updates {
+            let n = update.steps;
+            let (inside, outside) = (update.error_inside, update.error_outside);
+            add(
+                lesson.node,
+                child,
+                &format!("error_c_tilde_n{n}"),
+                inside.to_string(),
+            );
+            add(
+                lesson.node,
+                child,
+                &format!("error_c_n{n}"),
+                outside.to_string(),
+            );
+        }
+        if let Some(end) = lesson.termination {
+            add(
+                lesson.node,
+                "",
+                "at_goal",
+                u8::from(end.at_goal).to_string(),
+            );
+        }
+    }
+    csv
+}
+
+/// A label as a field: those of actions hold commas.
+fn quoted(text: &str) -> String {
+    match text.contains(',') {
+        true => format!("\"{text}\""),
+        false => text.to_owned(),
+    }
+}

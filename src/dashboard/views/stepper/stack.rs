@@ -1,0 +1,202 @@
+//! The MAXQ call stack of a time step, from the root to the action.
+
+use ratatui::text::Line;
+
+use super::{Detail, Shown};
+use crate::dashboard::look::Paint;
+use crate::dashboard::views::lines::{Pen, number, percent};
+use crate::learning::{ActionChoice, Choice, Level, Rule};
+
+/// Columns of a number.
+const NUMBER: usize = 8;
+/// Columns of a probability.
+const PERCENT: usize = 6;
+
+/// How wide the parts of a line are.
+#[derive(Clone, Copy)]
+struct Widths {
+    name: usize,
+    bar: usize,
+}
+
+impl Widths {
+    fn of(columns: usize) -> Self {
+        let rest = columns.saturating_sub(4 * NUMBER + PERCENT);
+        // Names are up to 15 long and indented by up to 4.
+        let name = rest.min(24);
+        Self {
+            name,
+            bar: rest.saturating_sub(name + 2).min(20),
+        }
+    }
+}
+
+/// The call stack.
+///
+/// ```text
+///                        C~+V       V      C~       C     p
+///  Root  chooses by softmax, τ 0.812
+///  ▸ FindBattery       -3.612  -3.212  -0.400  -0.400  88 %  ━━━━━━━━
+///    Wander            -5.401  -0.300  -5.101  -5.101  12 %  ━
+///   FindBattery  chooses by softmax, τ 0.900
+///   ▸ Avoid            ...
+///    Avoid  acts
+///    ▸ (600,600)                -0.300                  74 %  ━━━━━━━
+/// ```
+pub(super) fn lines(shown: &Shown<'_>, columns: usize, detail: Detail) -> Vec<Line<'static>> {
+    let widths = Widths::of(columns);
+    let explanation = &shown.trace.explanation;
+    let mut lines = vec![head(shown, widths)];
+    for (depth, level) in explanation.levels.iter().enumerate() {
+        lines.push(title(shown, depth, level));
+        if level.chose || detail.standing {
+            let choices = level.choices.iter();
+            lines.extend(choices.map(|choice| child(shown, widths, depth, level, choice)));
+        }
+    }
+    let depth = explanation.levels.len();
+    lines.extend(action(shown, widths, depth, &explanation.action, detail));
+    lines
+}
+
+fn head(shown: &Shown<'_>, widths: Widths) -> Line<'static> {
+    let mut pen = Pen::new(shown.look).to(widths.name);
+    for name in ["C~+V", "V", "C~", "C"] {
+        pen = pen.right(name, NUMBER, Paint::Dim);
+    }
+    pen.right("p", PERCENT, Paint::Dim).line()
+}
+
+fn title(shown: &Shown<'_>, depth: usize, level: &Level) -> Line<'static> {
+    let signs = shown.look.signs;
+    let tau = format!("{} {}", signs.tau, number(level.temperature));
+    let (what, paint) = match (level.chose, level.rule) {
+        (false, _) => {
+            let active = shown.name(level.active);
+            (format!("goes on with {active}, {tau}"), Paint::Dim)
+        }
+        (true, rule) => (format!("{}, {tau}", how(shown, rule)), Paint::Text),
+    };
+    Pen::new(shown.look)
+        .to(depth)
+        .text(shown.name(level.node), Paint::Title)
+        .text(if level.invoked { "  invoked, " } else { "  " }, paint)
+        .text(what, paint)
+        .line()
+}
+
+/// How a rule chooses, in words.
+fn how(shown: &Shown<'_>, rule: Rule) -> String {
+    match rule {
+        Rule::OnlyChoice => String::from("has one choice"),
+        Rule::Uniform => String::from("chooses at random"),
+        Rule::Softmax => String::from("chooses by softmax"),
+        Rule::EpsilonGreedy => format!("chooses {}-greedily", shown.look.signs.epsilon),
+    }
+}
+
+fn child(
+    shown: &Shown<'_>,
+    widths: Widths,
+    depth: usize,
+    level: &Level,
+    choice: &Choice,
+) -> Line<'static> {
+    let is_active = choice.node == level.active;
+    let (name, values) = match (is_active, level.chose) {
+        (true, true) => (Paint::Active, Paint::Title),
+        (true, false) => (Paint::Title, Paint::Text),
+        (false, true) => (Paint::Text, Paint::Text),
+        (false, false) => (Paint::Dim, Paint::Dim),
+    };
+    let mut pen = named(
+        shown,
+        widths,
+        depth,
+        is_active,
+        shown.name(choice.node),
+        name,
+    );
+    for value in [choice.preference(), choice.value, choice.c_tilde, choice.c] {
+        pen = pen.right(&number(value), NUMBER, values);
+    }
+    probability(pen, widths, choice.probability, is_active, values).line()
+}
+
+/// The beginning of the line of a child or an action.
+fn named<'s>(
+    shown: &Shown<'s>,
+    widths: Widths,
+    depth: usize,
+    is_chosen: bool,
+    name: &str,
+    paint: Paint,
+) -> Pen<'s> {
+    let sign = if is_chosen {
+        shown.look.signs.pointer
+    } else {
+        " "
+    };
+    let pen = Pen::new(shown.look)
+        .to(depth)
+        .text(format!("{sign} "), paint);
+    let room = widths.name.saturating_sub(pen.column());
+    let name = crate::dashboard::look::fitted(name, room, shown.look.signs);
+    pen.text(name, paint).to(widths.name)
+}
+
+fn probability(
+    pen: Pen<'_>,
+    widths: Widths,
+    probability: f32,
+    is_chosen: bool,
+    paint: Paint,
+) -> Pen<'_> {
+    let share = f64::from(probability);
+    let bar = if is_chosen { Paint::Good } else { Paint::Dim };
+    pen.right(&percent(share), PERCENT, paint)
+        .text("  ", Paint::Text)
+        .bar(share, widths.bar, bar)
+}
+
+fn action(
+    shown: &Shown<'_>,
+    widths: Widths,
+    depth: usize,
+    action: &ActionChoice,
+    detail: Detail,
+) -> Vec<Line<'static>> {
+    let signs = shown.look.signs;
+    let how = match action.rule {
+        Rule::EpsilonGreedy => format!("{}-greedily", signs.epsilon),
+        _ => String::from("by softmax"),
+    };
+    let title = Pen::new(shown.look)
+        .to(depth)
+        .text(shown.name(action.node), Paint::Title)
+        .text(
+            format!("  acts {how}, {} {}", signs.tau, number(action.temperature)),
+            Paint::Text,
+        )
+        .to(widths.name + 2 * NUMBER - 1)
+        .text("Q", Paint::Dim);
+    let mut lines = vec![title.line()];
+    let labels = shown.actions(action.node).iter();
+    let values = action.values.iter().zip(&action.probabilities);
+    for (index, (label, (value, share))) in labels.zip(values).enumerate() {
+        let is_chosen = index == action.chosen;
+        if !is_chosen && !detail.actions {
+            continue;
+        }
+        let (name, numbers) = match is_chosen {
+            true => (Paint::Active, Paint::Title),
+            false => (Paint::Text, Paint::Text),
+        };
+        let pen = named(shown, widths, depth, is_chosen, label, name)
+            .to(widths.name + NUMBER)
+            .right(&number(*value), NUMBER, numbers)
+            .to(widths.name + 4 * NUMBER);
+        lines.push(probability(pen, widths, *share, is_chosen, numbers).line());
+    }
+    lines
+}
