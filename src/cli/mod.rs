@@ -9,18 +9,22 @@ mod check;
 mod evaluate;
 mod export;
 mod frame;
+mod live;
 mod manual;
 mod output;
 mod primitives;
 mod progress;
+mod replay;
 mod resume;
 mod run;
 mod scenarios;
 mod schema;
+mod show;
 mod signals;
 mod source;
 mod study;
 mod tree;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -34,7 +38,7 @@ use output::Failure;
 /// MAXQ-Q while it forages - find a battery, capture it, bring it to the nest -, and
 /// typed crossover mixes the best (S. Elfwing, KTH 2003). The same scenario and seed give
 /// the same bits, whatever the machine, the number of threads, or how often the run was
-/// interrupted.
+/// interrupted. On a terminal a dashboard shows it all: watch, pause, take apart, step, replay.
 #[derive(Debug, Parser)]
 #[command(name = "maxq-lab", version, max_term_width = 100, after_help = AFTER_HELP)]
 struct Cli {
@@ -53,6 +57,8 @@ Begin with:
 enum Command {
     Run(run::Args),
     Resume(resume::Args),
+    Watch(watch::Args),
+    Replay(replay::Args),
     Frame(frame::Args),
     Evaluate(evaluate::Args),
     Study(Box<study::Args>),
@@ -77,6 +83,8 @@ pub fn main() -> ExitCode {
     let done = match command {
         Command::Run(args) => run::main(args),
         Command::Resume(args) => resume::main(&args),
+        Command::Watch(args) => watch::main(&args),
+        Command::Replay(args) => replay::main(&args),
         Command::Frame(args) => frame::main(&args),
         Command::Evaluate(args) => evaluate::main(args),
         Command::Study(args) => study::main(&args),

@@ -3,14 +3,16 @@
 use std::path::PathBuf;
 
 use super::output::{self, Done};
-use super::run::{How, follow};
+use super::live;
+use super::run::How;
 use super::signals::Caught;
 use crate::lab::{Invocation, RunFolder, resume};
 
 /// Go on with a run that was stopped, or died.
 ///
 /// The result is the same, bit for bit, as if the run had never been interrupted. With
-/// --generations a run that ended at its limit goes on to another limit.
+/// --generations a run that ended at its limit goes on to another limit. On a terminal a
+/// dashboard shows it, the past generations included.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// The run folder.
@@ -36,6 +38,7 @@ pub(super) fn main(args: &Args) -> Done {
             then.version, then.commit, now.version, now.commit
         ));
     }
+    let outfit = live::outfit(&args.how)?;
     let run = resume(&args.run_dir, args.generations, &args.how.options(false))?;
-    follow(run, signals, &args.how)
+    live::follow(run, outfit, signals, &args.how)
 }

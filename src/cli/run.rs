@@ -1,16 +1,20 @@
 //! `maxq-lab run`: evolve hierarchies for a scenario.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
-use super::output::{self, Done, Format};
-use super::progress;
+use super::output::{Done, Format};
+use super::live::{self, OnHangup};
+use super::show::Show;
 use super::signals::Caught;
 use super::source::Source;
 use crate::hierarchy::{Glyphs, draw};
-use crate::lab::{Keep, Outcome, Run, RunOptions, start};
+use crate::lab::{Keep, Outcome, RunOptions, start};
 
 /// Evolve hierarchies for a scenario.
+///
+/// On a terminal a dashboard shows the evolution while it goes on: press ? there to see what
+/// it can do. Without a terminal, or with --headless, there is none, and the result is the
+/// same, bit for bit.
 ///
 /// The run is kept in its folder as it goes: run.json (what was run), events.jsonl (every
 /// generation), checkpoint.json (the latest state), generations/ (the states before), and
@@ -21,7 +25,9 @@ use crate::lab::{Keep, Outcome, Run, RunOptions, start};
 Examples:
   maxq-lab run environment-2 --seed 7
   maxq-lab run my-scenario.json --threads 4 --format json > result.json
-  maxq-lab run environment-1 --set evolution.selection=random --out runs/drift")]
+  maxq-lab run environment-1 --set evolution.selection=random --out runs/drift
+  maxq-lab run environment-3 --fps 2               over a slow line
+  maxq-lab run environment-3 --headless            no dashboard: a progress bar")]
 pub(super) struct Args {
     #[command(flatten)]
     source: Source,
@@ -57,13 +63,22 @@ pub(super) struct How {
     #[arg(long, value_name = "all|none|N", default_value = "all")]
     keep: Keep,
 
-    /// Show no progress, although standard error is a terminal.
+    /// Open no dashboard, although there is a terminal; a bar on standard error shows the
+    /// progress.
     #[arg(long)]
-    headless: bool,
+    pub(super) headless: bool,
+
+    /// What becomes of the run when the line drops: it goes on without a terminal, or is
+    /// saved and ended. 'maxq-lab watch' and 'maxq-lab resume' find it again.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) on_hangup: OnHangup,
 
     /// How to report the result.
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    pub(super) format: Format,
+
+    #[command(flatten)]
+    pub(super) show: Show,
 }
 
 impl How {
@@ -74,6 +89,14 @@ impl How {
             keep: self.keep,
             force,
         }
+    }
+
+    /// The arguments with which another process goes on with the run as it was, without a
+    /// terminal.
+    pub(super) fn resume_headless(&self) -> Vec<String> {
+        let (threads, keep) = (self.threads.to_string(), self.keep.to_string());
+        let arguments = ["resume", "--headless", "--threads", &threads, "--keep", &keep];
+        arguments.map(String::from).to_vec()
     }
 }
 
@@ -88,35 +111,13 @@ pub(super) fn main(args: Args) -> Done {
         PathBuf::from("runs").join(format!("{}-seed{}", scenario.name, args.seed))
     });
     let signals = Caught::now()?;
+    let outfit = live::outfit(&args.how)?;
     let run = start(scenario, args.seed, &folder, &args.how.options(args.force))?;
-    follow(run, signals, &args.how)
+    live::follow(run, outfit, signals, &args.how)
 }
 
-/// Follows a run to its end and reports its result. Signals were caught before the run
-/// began, so that none falls between.
-pub(super) fn follow(run: Run, signals: Caught, how: &How) -> Done {
-    let controls = run.controls.clone();
-    let ended = signals.then(move || controls.stop())?;
-    let evolution = &run.scenario.evolution;
-    let (limit, population) = (evolution.generation_limit, evolution.population_size);
-    progress::follow(&run.events, limit, population, !how.headless);
-    let scenario = run.scenario.clone();
-    let outcome = run.join()?;
-    match how.format {
-        Format::Json => output::json(&outcome)?,
-        Format::Text => output::text(&describe(&outcome, &scenario)?)?,
-    }
-    if outcome.stopped {
-        let folder = &outcome.run_dir;
-        output::message(&format!("stopped; go on with: maxq-lab resume {folder}"));
-    }
-    Ok(ended
-        .exit_code()
-        .filter(|_| outcome.stopped)
-        .map_or(ExitCode::SUCCESS, ExitCode::from))
-}
-
-fn describe(
+/// A result, for people.
+pub(super) fn describe(
     outcome: &Outcome,
     scenario: &crate::scenario::Scenario,
 ) -> Result<String, super::output::Failure> {

@@ -1,50 +1,66 @@
 //! Signals that end the program.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+use std::sync::atomic::{AtomicI32, Ordering};
+use std::thread;
 
+use crossbeam_channel::{Receiver, unbounded};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use super::output::Failure;
+use crate::dashboard::terminal;
 
 /// Signals that end the program, caught from now on; they wait to be heard.
 #[derive(Debug)]
 pub(super) struct Caught {
-    signals: Signals,
+    /// The signals, in the order in which they came.
+    pub(super) heard: Receiver<i32>,
 }
 
-/// The first signal that asked the program to end.
+/// The signal that ended the program.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ended {
     signal: Arc<AtomicI32>,
 }
 
 impl Caught {
-    /// Catches SIGINT, SIGTERM and SIGHUP; a second one of them ends the program at once,
-    /// which loses no more than a crash would: nothing.
+    /// Catches SIGINT, SIGTERM and SIGHUP; a second SIGINT or SIGTERM ends the program at
+    /// once, which loses no more than a crash would: nothing. SIGHUP comes twice when a line
+    /// drops, from the system and from the shell, and means the same both times.
     pub(super) fn now() -> Result<Self, Failure> {
-        let again = Arc::new(AtomicBool::new(false));
-        for signal in [SIGINT, SIGTERM, SIGHUP] {
-            // Order matters: on the second signal the flag is set already.
-            let code = 128 + signal;
-            signal_hook::flag::register_conditional_shutdown(signal, code, Arc::clone(&again))?;
-            signal_hook::flag::register(signal, Arc::clone(&again))?;
-        }
-        Ok(Self {
-            signals: Signals::new([SIGINT, SIGTERM, SIGHUP])?,
-        })
+        let caught = match hangup_is_ignored() {
+            true => vec![SIGINT, SIGTERM],
+            false => vec![SIGINT, SIGTERM, SIGHUP],
+        };
+        let mut signals = Signals::new(caught)?;
+        let (sender, heard) = unbounded();
+        thread::Builder::new()
+            .name(String::from("signals"))
+            .spawn(move || {
+                let mut asked = false;
+                for signal in signals.forever() {
+                    if asked && signal != SIGHUP {
+                        terminal::restore();
+                        signal_hook::low_level::exit(128 + signal);
+                    }
+                    asked |= signal != SIGHUP;
+                    // Who does not listen is about to end anyway.
+                    let _ = sender.send(signal);
+                }
+            })?;
+        Ok(Self { heard })
     }
 
     /// Calls `stop` on the first signal, the one that waits already if there is one.
-    pub(super) fn then(mut self, stop: impl Fn() + Send + 'static) -> Result<Ended, Failure> {
+    pub(super) fn then(self, stop: impl FnOnce() + Send + 'static) -> Result<Ended, Failure> {
         let ended = Ended::default();
         let first = ended.clone();
-        std::thread::Builder::new()
-            .name(String::from("signals"))
+        thread::Builder::new()
+            .name(String::from("ending"))
             .spawn(move || {
-                if let Some(signal) = self.signals.forever().next() {
-                    first.signal.store(signal, Ordering::SeqCst);
+                if let Ok(signal) = self.heard.recv() {
+                    first.by(signal);
                     stop();
                 }
             })?;
@@ -53,6 +69,11 @@ impl Caught {
 }
 
 impl Ended {
+    /// A signal ended the program.
+    pub(super) fn by(&self, signal: i32) {
+        self.signal.store(signal, Ordering::SeqCst);
+    }
+
     /// The exit code that tells which signal ended the program: 128 and its number.
     pub(super) fn exit_code(&self) -> Option<u8> {
         match self.signal.load(Ordering::SeqCst) {
@@ -60,4 +81,15 @@ impl Ended {
             signal => u8::try_from(128 + signal).ok(),
         }
     }
+}
+
+/// Whether the program was started to survive a line that drops, as by `nohup`.
+fn hangup_is_ignored() -> bool {
+    // Where the system does not tell, SIGHUP is caught.
+    let Ok(status) = std::fs::read_to_string("/proc/self/status") else {
+        return false;
+    };
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_some_and(|mask| mask & (1 << (SIGHUP - 1)) != 0)
 }

@@ -1,5 +1,6 @@
 //! The run folder: what lies in it, who may write it, how it comes to be.
 
+use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -100,6 +101,16 @@ impl Keep {
             Self::All => true,
             Self::Every(n) => generation.is_multiple_of(n),
             Self::None => false,
+        }
+    }
+}
+
+impl fmt::Display for Keep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => f.write_str("all"),
+            Self::Every(n) => write!(f, "{n}"),
+            Self::None => f.write_str("none"),
         }
     }
 }

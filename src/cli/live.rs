@@ -1,0 +1,148 @@
+//! Following a run of this process to its end, with a dashboard or without.
+
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Command, ExitCode, Stdio};
+use std::thread;
+
+use clap::ValueEnum;
+use signal_hook::consts::SIGHUP;
+
+use super::output::{self, Done, Failure, Format};
+use super::progress;
+use super::run::{How, describe};
+use super::show::{Outfit, Show};
+use super::signals::{Caught, Ended};
+use crate::dashboard::Mode;
+use crate::dashboard::session::{Exit, Source};
+use crate::dashboard::terminal;
+use crate::lab::{Outcome, Run};
+
+/// What becomes of a run when the line drops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum OnHangup {
+    /// It goes on without a terminal, to its end.
+    #[default]
+    Detach,
+    /// It is saved and ended.
+    Stop,
+}
+
+/// The keys and looks of a dashboard, if there will be one.
+pub(super) fn outfit(how: &How) -> Result<Option<Outfit>, Failure> {
+    match how.headless || !Show::is_possible() {
+        true => Ok(None),
+        false => how.show.outfit().map(Some),
+    }
+}
+
+/// Follows a run to its end and reports its result. Signals were caught before the run
+/// began, so that none falls between.
+pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &How) -> Done {
+    let ended = Ended::default();
+    let exit = match outfit {
+        Some(outfit) => Some(show(&run, outfit, &signals, how)?),
+        None => None,
+    };
+    let went_headless = match exit {
+        None => true,
+        Some(Exit::HungUp) => hang_up(&run, &ended, how.on_hangup),
+        Some(Exit::Signal(signal)) => {
+            ended.by(signal);
+            false
+        }
+        Some(_) => false,
+    };
+    if went_headless {
+        headless(&run, signals, &ended, how)?;
+    } else {
+        run.controls.stop();
+    }
+    let scenario = run.scenario.clone();
+    let outcome = run.join()?;
+    match how.format {
+        Format::Json => output::json(&outcome)?,
+        Format::Text => output::text(&describe(&outcome, &scenario)?)?,
+    }
+    if outcome.stopped && exit == Some(Exit::Detached) {
+        return hand_over(&outcome, how);
+    }
+    if outcome.stopped {
+        let folder = &outcome.run_dir;
+        output::message(&format!("stopped; go on with: maxq-lab resume {folder}"));
+    }
+    match exit {
+        Some(Exit::Panicked) => Ok(ExitCode::FAILURE),
+        _ => Ok(ended
+            .exit_code()
+            .filter(|_| outcome.stopped)
+            .map_or(ExitCode::SUCCESS, ExitCode::from)),
+    }
+}
+
+fn show(run: &Run, outfit: Outfit, signals: &Caught, how: &How) -> Result<Exit, Failure> {
+    let app = outfit.dashboard(Mode::Live, run.scenario.clone(), run.seed, &run.folder)?;
+    let source = Source::live(&run.events, &run.controls);
+    how.show.session(app, source, signals)
+}
+
+/// The line dropped. Returns whether the run goes on.
+fn hang_up(run: &Run, ended: &Ended, on_hangup: OnHangup) -> bool {
+    // A run without a terminal is not worth less for a system without /dev/null.
+    let _detached = terminal::detach();
+    let goes_on = on_hangup == OnHangup::Detach;
+    if goes_on {
+        // Nobody could let a run go on that waits.
+        run.controls.resume();
+    } else {
+        ended.by(SIGHUP);
+    }
+    goes_on
+}
+
+/// Follows a run to its end without a dashboard. SIGHUP means that the line dropped where
+/// there is one, and is one more signal that ends the program where there is none.
+fn headless(run: &Run, signals: Caught, ended: &Ended, how: &How) -> Result<(), Failure> {
+    let (controls, ended) = (run.controls.clone(), ended.clone());
+    let detach = how.on_hangup == OnHangup::Detach && terminal::is_attached();
+    let mut attached = true;
+    thread::Builder::new()
+        .name(String::from("ending"))
+        .spawn(move || {
+            for signal in &signals.heard {
+                if signal == SIGHUP && detach {
+                    if attached {
+                        attached = false;
+                        let _detached = terminal::detach();
+                    }
+                    continue;
+                }
+                ended.by(signal);
+                controls.stop();
+            }
+        })?;
+    let evolution = &run.scenario.evolution;
+    let (limit, population) = (evolution.generation_limit, evolution.population_size);
+    progress::follow(&run.events, limit, population);
+    Ok(())
+}
+
+/// Lets another process without a terminal go on with a run that was stopped.
+fn hand_over(outcome: &Outcome, how: &How) -> Done {
+    let folder = &outcome.run_dir;
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args(how.resume_headless());
+    command.arg("--").arg(Path::new(folder));
+    // A job of its own: what the shell does to its jobs is not meant for it.
+    command.process_group(0);
+    let null = Stdio::null;
+    let process = command.stdin(null()).stdout(null()).stderr(null()).spawn();
+    let process = process.map_err(|error| {
+        format!("no process can go on with the run ({error}); do so with: maxq-lab resume {folder}")
+    })?;
+    output::message(&format!(
+        "process {} goes on with the run; look at it with: maxq-lab watch {folder}",
+        process.id()
+    ));
+    Ok(ExitCode::SUCCESS)
+}

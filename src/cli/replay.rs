@@ -1,0 +1,47 @@
+//! `maxq-lab replay`: look at a run that is not going on.
+
+use std::path::PathBuf;
+
+use super::output::{self, Done};
+use super::show::{Show, exit_code};
+use super::signals::Caught;
+use crate::dashboard::Mode;
+use crate::dashboard::session::Source;
+use crate::lab::{Life, Recording};
+
+/// Look at a run that has ended, was stopped, or died.
+///
+/// The dashboard is the one of 'maxq-lab run', over the events that the run left in its
+/// folder: travel through its generations, open any individual, compare two, follow a
+/// lineage back to the start. Nothing in the folder is changed. Press ? for the keys.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab replay runs/environment-1-seed1
+  maxq-lab replay runs/environment-1-seed1 --theme mono")]
+pub(super) struct Args {
+    /// The run folder.
+    run_dir: PathBuf,
+
+    #[command(flatten)]
+    show: Show,
+}
+
+/// Carries out the command.
+pub(super) fn main(args: &Args) -> Done {
+    Show::require()?;
+    let signals = Caught::now()?;
+    let outfit = args.show.outfit()?;
+    let recording = Recording::read(&args.run_dir)?;
+    let (scenario, seed) = (recording.manifest.scenario.clone(), recording.manifest.seed);
+    let app = outfit.dashboard(Mode::Replay, scenario, seed, &args.run_dir)?;
+    let goes_on = recording.life == Life::Computing;
+    let exit = args.show.session(app, Source::recorded(recording), &signals)?;
+    if goes_on {
+        let folder = args.run_dir.display();
+        output::message(&format!(
+            "note: another process was working on this run; follow it with: maxq-lab watch {folder}"
+        ));
+    }
+    exit_code(exit)
+}

@@ -1,0 +1,154 @@
+//! The dashboard as the command line asks for it.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use signal_hook::consts::SIGHUP;
+
+use super::output::{Done, Failure};
+use super::signals::Caught;
+use crate::dashboard::keys::KeyMap;
+use crate::dashboard::look::{Look, Signs};
+use crate::dashboard::session::{Exit, Session, Source};
+use crate::dashboard::terminal::{Terminal, is_terminal};
+use crate::dashboard::{App, Config, Mode, Setting};
+use crate::hierarchy::Glyphs;
+use crate::scenario::Scenario;
+
+/// How the dashboard looks.
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Dashboard")]
+pub(super) struct Show {
+    /// Draw with ASCII alone, as it is done anyway where the locale is not UTF-8.
+    #[arg(long)]
+    ascii: bool,
+
+    /// Colours: dark, light, high-contrast, or mono, the default where NO_COLOR is set.
+    #[arg(long, value_name = "NAME")]
+    theme: Option<String>,
+
+    /// Frames a second at most; 2 is enough to follow a run over a slow line.
+    ///
+    /// Keys act at once all the same, and nothing is sent when nothing has changed.
+    #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = frames)]
+    fps: f64,
+
+    /// Let the mouse scroll; the terminal then selects text with Shift alone.
+    #[arg(long)]
+    mouse: bool,
+
+    /// Keys and styles of your own, in TOML [default: maxq-lab/config.toml in the
+    /// configuration folder, if it is there].
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+}
+
+fn frames(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(frames) if (0.2..=60.0).contains(&frames) => Ok(frames),
+        _ => Err(String::from("allowed: 0.2 to 60")),
+    }
+}
+
+impl Show {
+    /// Whether there is a terminal that can show a dashboard.
+    pub(super) fn is_possible() -> bool {
+        let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+        is_terminal() && !dumb
+    }
+
+    /// Fails where there is no terminal.
+    pub(super) fn require() -> Result<(), Failure> {
+        match Self::is_possible() {
+            true => Ok(()),
+            false => Err(Failure::Message(String::from(
+                "standard input or output is no terminal that a dashboard could be shown on; \
+                 'maxq-lab frame RUN_DIR' prints a frame anywhere",
+            ))),
+        }
+    }
+
+    /// The person's keys and looks. What is wrong with them is told before anything is
+    /// computed.
+    pub(super) fn outfit(&self) -> Result<Outfit, Failure> {
+        let config = self.config()?;
+        let glyphs = match self.ascii {
+            true => Glyphs::Ascii,
+            false => Glyphs::of_locale(),
+        };
+        Ok(Outfit {
+            look: Look::new(config.themes, &config.theme, Signs::of(glyphs)),
+            keys: config.keys,
+        })
+    }
+
+    fn config(&self) -> Result<Config, Failure> {
+        let path = match &self.config {
+            Some(path) => Some(path.clone()),
+            None => Config::default_path().filter(|path| path.exists()),
+        };
+        let mut config = match path {
+            Some(path) => Config::load(&path)?,
+            None => Config::default(),
+        };
+        let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        match &self.theme {
+            Some(theme) => {
+                let known = |name: &String| name == theme;
+                let names: Vec<_> = config.themes.iter().map(|theme| theme.name.clone()).collect();
+                if !names.iter().any(known) {
+                    let allowed = names.join(", ");
+                    return Err(format!("--theme: found {theme:?}; allowed: {allowed}").into());
+                }
+                config.theme.clone_from(theme);
+            }
+            None if no_color => config.theme = String::from("mono"),
+            None => {}
+        }
+        Ok(config)
+    }
+
+    /// Shows a dashboard until somebody or something ends it.
+    pub(super) fn session(
+        &self,
+        app: App,
+        source: Source<'_>,
+        signals: &Caught,
+    ) -> Result<Exit, Failure> {
+        let terminal = Terminal::open(self.mouse).map_err(|error| format!("terminal: {error}"))?;
+        let session = Session::new(app, terminal, source, self.fps, Path::new("."));
+        Ok(session.run(&signals.heard)?)
+    }
+}
+
+/// A person's keys and looks.
+#[derive(Debug)]
+pub(super) struct Outfit {
+    look: Look,
+    keys: KeyMap,
+}
+
+impl Outfit {
+    /// A dashboard over a run.
+    pub(super) fn dashboard(
+        self,
+        mode: Mode,
+        scenario: Scenario,
+        seed: u64,
+        folder: &Path,
+    ) -> Result<App, Failure> {
+        let setting = Setting::new(scenario, seed, folder.display().to_string())?;
+        Ok(App::new(setting, mode, self.look, self.keys))
+    }
+}
+
+/// The exit code of a session that left nothing behind to be done.
+pub(super) fn exit_code(exit: Exit) -> Done {
+    let code = |signal: i32| u8::try_from(128 + signal).map_or(ExitCode::FAILURE, ExitCode::from);
+    match exit {
+        Exit::Left | Exit::Detached => Ok(ExitCode::SUCCESS),
+        Exit::HungUp => Ok(code(SIGHUP)),
+        Exit::Signal(signal) => Ok(code(signal)),
+        Exit::Panicked | Exit::Failed => Ok(ExitCode::FAILURE),
+    }
+}

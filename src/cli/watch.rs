@@ -1,0 +1,77 @@
+//! `maxq-lab watch`: follow a run that another process computes.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use crossbeam_channel::select;
+
+use super::output::{self, Done, Failure};
+use super::show::{Show, exit_code};
+use super::signals::Caught;
+use crate::dashboard::Mode;
+use crate::dashboard::session::{Exit, Source};
+use crate::lab::{Life, Manifest, News, Watch};
+
+/// Time between two looks at the run folder.
+const INTERVAL: Duration = Duration::from_millis(250);
+
+/// Follow a run that another process computes.
+///
+/// The dashboard is the one of 'maxq-lab run', but it cannot steer: the folder is read, never
+/// written, and no lock is taken, so that a run of another machine in a shared folder can be
+/// watched, by any number of people, as long as it takes. It may be started before the run
+/// is, and goes on when the run is stopped, resumed or replaced.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab watch runs/environment-3-seed7
+  maxq-lab watch /shared/runs/environment-3-seed7 --fps 2")]
+pub(super) struct Args {
+    /// The run folder; it need not be there yet.
+    run_dir: PathBuf,
+
+    #[command(flatten)]
+    show: Show,
+}
+
+/// Carries out the command.
+pub(super) fn main(args: &Args) -> Done {
+    Show::require()?;
+    let signals = Caught::now()?;
+    let outfit = args.show.outfit()?;
+    let watch = Watch::start(&args.run_dir, INTERVAL)?;
+    let manifest = match wait_for_run(&args.run_dir, &watch, &signals)? {
+        Found::Run(manifest) => *manifest,
+        Found::Signal(signal) => return exit_code(Exit::Signal(signal)),
+    };
+    let (scenario, seed) = (manifest.scenario, manifest.seed);
+    let app = outfit.dashboard(Mode::Watch, scenario, seed, &args.run_dir)?;
+    exit_code(args.show.session(app, Source::Watched(&watch), &signals)?)
+}
+
+/// What came first.
+enum Found {
+    Run(Box<Manifest>),
+    Signal(i32),
+}
+
+fn wait_for_run(folder: &Path, watch: &Watch, signals: &Caught) -> Result<Found, Failure> {
+    loop {
+        select! {
+            recv(watch.news) -> news => match news {
+                Ok(News::Run(manifest)) => return Ok(Found::Run(manifest)),
+                Ok(News::Life(Life::Absent)) => output::message(&format!(
+                    "waiting for a run in {}; Ctrl-C gives up",
+                    folder.display()
+                )),
+                Ok(News::Trouble(message)) => return Err(message.into()),
+                Ok(_) => {}
+                Err(_) => return Err("the run folder is not followed any more".into()),
+            },
+            recv(signals.heard) -> signal => match signal {
+                Ok(signal) => return Ok(Found::Signal(signal)),
+                Err(_) => return Err("signals are not heard any more".into()),
+            },
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! A dashboard on a terminal: who is asked what, and when a frame is drawn.
+//!
+//! Events of the run are taken in once a frame, however many there are, so that showing a
+//! run costs the same at any speed of evolution. Keys act when they are pressed. A frame
+//! is drawn when something has changed and the terminal has taken the last one.
+
+mod save;
+mod source;
+
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, after, select};
+use crossterm::event::{Event as Typed, KeyCode, KeyEvent, KeyModifiers, MouseEventKind};
+use signal_hook::consts::SIGHUP;
+
+pub use source::{Live, Source};
+
+use super::keys::Key;
+use super::terminal::{Job, Terminal};
+use super::{App, Effect, Input, Setting};
+use crate::lab::{Life, Manifest, News};
+
+/// Time between two looks whether the program is in the foreground again.
+const BACKGROUND: Duration = Duration::from_millis(250);
+
+/// Why a session is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// The person has left.
+    Left,
+    /// The person has left, and the run is to go on.
+    Detached,
+    /// The line dropped: the terminal is gone.
+    HungUp,
+    /// A signal asked the program to end.
+    Signal(i32),
+    /// A thread has panicked, and the terminal was given back.
+    Panicked,
+    /// The run has failed.
+    Failed,
+}
+
+/// A dashboard on a terminal.
+pub struct Session<'s> {
+    app: App,
+    terminal: Terminal,
+    source: Source<'s>,
+    /// Time between two frames.
+    period: Duration,
+    /// Where exports are written.
+    exports: &'s Path,
+    ticked: Instant,
+    /// Whether something may have changed that was not drawn.
+    due: bool,
+}
+
+/// What a session waits for.
+enum Woken {
+    Typed(Option<Typed>),
+    Job(Job),
+    Drawn(io::Result<()>),
+    Signal(i32),
+    Time,
+}
+
+impl<'s> Session<'s> {
+    /// A session of so many frames a second.
+    #[must_use]
+    pub fn new(
+        app: App,
+        terminal: Terminal,
+        source: Source<'s>,
+        frames_per_second: f64,
+        exports: &'s Path,
+    ) -> Self {
+        Self {
+            app,
+            terminal,
+            source,
+            period: Duration::from_secs_f64(1.0 / frames_per_second.clamp(0.1, 60.0)),
+            exports,
+            ticked: Instant::now(),
+            due: true,
+        }
+    }
+
+    /// Shows the run until somebody or something ends it. The terminal is given back then,
+    /// and the run is as it was left.
+    ///
+    /// # Errors
+    /// When a frame cannot be made.
+    pub fn run(mut self, signals: &Receiver<i32>) -> io::Result<Exit> {
+        if self.appear().is_err() {
+            return Ok(Exit::HungUp);
+        }
+        loop {
+            if let Some(exit) = self.tick() {
+                return Ok(exit);
+            }
+            self.draw()?;
+            let woken = self.wait(signals);
+            if let Some(exit) = self.act(woken) {
+                return Ok(exit);
+            }
+            if self.terminal.is_closed() {
+                return Ok(Exit::Panicked);
+            }
+        }
+    }
+
+    /// Takes the screen, unless the program is in the background.
+    fn appear(&mut self) -> io::Result<()> {
+        self.terminal.go_on()?;
+        self.resize();
+        Ok(())
+    }
+
+    fn period(&self) -> Duration {
+        match self.terminal.is_shown() {
+            true => self.period,
+            false => self.period.max(BACKGROUND),
+        }
+    }
+
+    /// Takes in the news of the run and the time, once a frame.
+    fn tick(&mut self) -> Option<Exit> {
+        let elapsed = self.ticked.elapsed();
+        let first = self.app.desk().clock.is_zero();
+        if elapsed < self.period() && !first {
+            return None;
+        }
+        self.ticked = Instant::now();
+        self.due = true;
+        for news in self.source.news() {
+            if let Some(exit) = self.take_in(news) {
+                return Some(exit);
+            }
+        }
+        let effects = self.app.update(Input::Tick(elapsed));
+        if let Some(exit) = self.carry_out(effects) {
+            return Some(exit);
+        }
+        let hidden = !self.terminal.is_shown();
+        (hidden && self.appear().is_err()).then_some(Exit::HungUp)
+    }
+
+    /// Takes in what is new of the run.
+    fn take_in(&mut self, news: News) -> Option<Exit> {
+        let effects = match news {
+            News::Event(event) => self.app.update(Input::Event(Box::new(event))),
+            News::Trouble(message) => self.app.update(Input::Message(message)),
+            News::Run(manifest) => {
+                self.turn_to(*manifest);
+                Vec::new()
+            }
+            News::Life(Life::Computing) => Vec::new(),
+            News::Life(life) => {
+                if matches!((&self.source, life), (Source::Live(_), Life::Silent)) {
+                    return Some(Exit::Failed);
+                }
+                if let Some(text) = describe(life) {
+                    self.say(text);
+                }
+                self.app.update(Input::Closed)
+            }
+        };
+        self.carry_out(effects)
+    }
+
+    /// Turns to another run that took the place of the one before. One that is told again
+    /// is taken in again.
+    fn turn_to(&mut self, manifest: Manifest) {
+        let desk = self.app.desk();
+        if (&manifest.scenario, manifest.seed) == (&desk.setting.scenario, desk.setting.seed) {
+            return;
+        }
+        let (look, keys) = (desk.look.clone(), desk.keys.clone());
+        let (mode, folder) = (desk.mode, desk.setting.folder.clone());
+        match Setting::new(manifest.scenario, manifest.seed, folder) {
+            Ok(setting) => {
+                self.app = App::new(setting, mode, look, keys);
+                self.resize();
+                self.say("another run took the place of the one before");
+            }
+            Err(error) => self.say(&error.to_string()),
+        }
+    }
+
+    /// Draws if there is something to draw and the terminal takes it; otherwise it is drawn
+    /// when the terminal has taken the frame before.
+    fn draw(&mut self) -> io::Result<()> {
+        if self.due && self.terminal.is_ready() {
+            self.due = false;
+            if self.app.take_dirty() {
+                let app = &self.app;
+                self.terminal.draw(|frame| app.draw(frame))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn wait(&self, signals: &Receiver<i32>) -> Woken {
+        let left = self.period().saturating_sub(self.ticked.elapsed());
+        let time = after(left);
+        select! {
+            recv(self.terminal.keys) -> typed => Woken::Typed(typed.ok()),
+            recv(self.terminal.jobs) -> job => job.map_or(Woken::Time, Woken::Job),
+            recv(self.terminal.drawn) -> drawn => drawn.map_or(Woken::Time, Woken::Drawn),
+            recv(signals) -> signal => signal.map_or(Woken::Time, Woken::Signal),
+            recv(time) -> _ => Woken::Time,
+        }
+    }
+
+    fn act(&mut self, woken: Woken) -> Option<Exit> {
+        match woken {
+            Woken::Time | Woken::Drawn(Ok(())) => None,
+            Woken::Drawn(Err(_)) | Woken::Signal(SIGHUP) => Some(Exit::HungUp),
+            Woken::Signal(signal) => Some(Exit::Signal(signal)),
+            Woken::Typed(typed) => self.typed(typed),
+            Woken::Job(Job::Resize) => {
+                self.resize();
+                None
+            }
+            Woken::Job(Job::Suspend) => {
+                self.terminal.suspend();
+                None
+            }
+            Woken::Job(Job::Continue) => self.appear().is_err().then_some(Exit::HungUp),
+        }
+    }
+
+    /// Acts on a key and on all that were pressed since.
+    fn typed(&mut self, typed: Option<Typed>) -> Option<Exit> {
+        let mut typed = Some(typed?);
+        while let Some(event) = typed {
+            if let Some(key) = key(&event) {
+                self.due = true;
+                let effects = self.app.update(Input::Key(key));
+                if let Some(exit) = self.carry_out(effects) {
+                    return Some(exit);
+                }
+            }
+            typed = self.terminal.keys.try_recv().ok();
+        }
+        None
+    }
+
+    fn resize(&mut self) {
+        let size = self.terminal.resize();
+        self.due = true;
+        // A size has no effect outside of the dashboard.
+        let _ = self.app.update(Input::Resize(size.width, size.height));
+    }
+
+    fn carry_out(&mut self, effects: Vec<Effect>) -> Option<Exit> {
+        for effect in effects {
+            match effect {
+                Effect::Quit => return Some(Exit::Left),
+                Effect::Detach => return Some(Exit::Detached),
+                Effect::Suspend => {
+                    if !self.terminal.ask_to_suspend() {
+                        self.say("no shell waits that could continue the program");
+                    }
+                }
+                Effect::Redraw => {
+                    if self.appear().is_err() {
+                        return Some(Exit::HungUp);
+                    }
+                }
+                Effect::Export(export) => match save::save(self.exports, &export) {
+                    Ok(path) => self.say(&format!("written: {}", path.display())),
+                    Err(error) => self.say(&format!("{}: {error}", export.name)),
+                },
+                steer => self.source.steer(&steer),
+            }
+        }
+        None
+    }
+
+    fn say(&mut self, text: &str) {
+        self.due = true;
+        // What is said has no effect outside of the dashboard.
+        let _ = self.app.update(Input::Message(text.to_owned()));
+    }
+}
+
+/// What is said of a run that is not being computed.
+fn describe(life: Life) -> Option<&'static str> {
+    match life {
+        Life::Computing | Life::Over => None,
+        Life::Absent => Some("the run folder is gone; waiting for it"),
+        Life::Silent => Some("no sign of life: the run died or froze, or its folder is out of reach"),
+        Life::Stopped => Some("nobody computes this run; it can be resumed"),
+    }
+}
+
+/// The key that something typed stands for; the wheel of the mouse stands for the arrows.
+fn key(typed: &Typed) -> Option<Key> {
+    let arrow = |code| Key::of(KeyEvent::new(code, KeyModifiers::NONE));
+    match typed {
+        Typed::Key(event) => Key::of(*event),
+        Typed::Mouse(mouse) => match mouse.kind {
+            MouseEventKind::ScrollUp => arrow(KeyCode::Up),
+            MouseEventKind::ScrollDown => arrow(KeyCode::Down),
+            _ => None,
+        },
+        _ => None,
+    }
+}

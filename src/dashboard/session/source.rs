@@ -1,0 +1,103 @@
+//! Where a session's news come from, and where its commands go.
+
+use crossbeam_channel::{Receiver, TryRecvError};
+
+use crate::dashboard::Effect;
+use crate::lab::{Activity, Controls, Event, Life, News, Recording, Watch};
+
+/// News that are taken in at once; if there are more, the others come with the next frame.
+const MOST: usize = 4096;
+
+/// Where news come from.
+#[derive(Debug)]
+pub enum Source<'s> {
+    /// A run of this process.
+    Live(Live<'s>),
+    /// A run of another process.
+    Watched(&'s Watch),
+    /// A run that is not going on: all there is to tell, and nothing once it was told.
+    Recorded(Vec<News>),
+}
+
+/// A run of this process.
+#[derive(Debug)]
+pub struct Live<'s> {
+    events: &'s Receiver<Event>,
+    controls: &'s Controls,
+    over: bool,
+    closed: bool,
+}
+
+impl<'s> Source<'s> {
+    /// A run of this process.
+    #[must_use]
+    pub fn live(events: &'s Receiver<Event>, controls: &'s Controls) -> Self {
+        Self::Live(Live {
+            events,
+            controls,
+            over: false,
+            closed: false,
+        })
+    }
+
+    /// A run that is not going on.
+    #[must_use]
+    pub fn recorded(recording: Recording) -> Self {
+        let events = recording.events.into_iter().map(News::Event);
+        Self::Recorded(events.chain([News::Life(recording.life)]).collect())
+    }
+
+    /// What is new.
+    pub(super) fn news(&mut self) -> Vec<News> {
+        match self {
+            Self::Live(live) => live.news(),
+            Self::Watched(watch) => watch.news.try_iter().take(MOST).collect(),
+            Self::Recorded(news) => std::mem::take(news),
+        }
+    }
+
+    /// Steers the run; what is not this process's is not steered.
+    pub(super) fn steer(&self, effect: &Effect) {
+        let Self::Live(Live { controls, .. }) = self else {
+            return;
+        };
+        match effect {
+            Effect::Pause => controls.pause(),
+            Effect::Resume => controls.resume(),
+            Effect::Step => controls.step(),
+            Effect::Checkpoint => controls.checkpoint(),
+            Effect::Stop => controls.stop(),
+            _ => {}
+        }
+    }
+}
+
+impl Live<'_> {
+    fn news(&mut self) -> Vec<News> {
+        let mut news = Vec::new();
+        while news.len() < MOST && !self.closed {
+            match self.events.try_recv() {
+                Ok(event) => {
+                    self.over = matches!(event, Event::Ended { .. }) || self.over;
+                    news.push(News::Event(event));
+                }
+                Err(TryRecvError::Empty) => break,
+                Err(TryRecvError::Disconnected) => {
+                    self.closed = true;
+                    news.push(News::Life(self.life()));
+                }
+            }
+        }
+        news
+    }
+
+    /// What has become of a run that tells nothing more.
+    fn life(&self) -> Life {
+        match self.controls.activity() {
+            _ if self.over => Life::Over,
+            Activity::Stopped => Life::Stopped,
+            // It could not be recorded; joining it tells why.
+            _ => Life::Silent,
+        }
+    }
+}

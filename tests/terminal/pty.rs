@@ -1,0 +1,264 @@
+//! A terminal of this test's own: a pseudo-terminal with a program in it, whose screen
+//! can be read and whose keys can be pressed.
+
+// The benchmark of the dashboard compiles this module too, and uses a part of it.
+#![allow(dead_code)]
+
+use std::io::{Read, Write};
+use std::num::NonZeroU16;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
+
+/// The bound of every wait: generous, for a loaded machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Time between two looks.
+const LOOK: Duration = Duration::from_millis(5);
+
+pub struct Pty {
+    master: Option<Box<dyn MasterPty + Send>>,
+    keys: Option<Box<dyn Write + Send>>,
+    pub child: Box<dyn Child + Send + Sync>,
+    shown: Arc<Shown>,
+    modes_before: String,
+}
+
+/// What came from the program.
+struct Shown {
+    parser: Mutex<vt100::Parser>,
+    bytes: AtomicU64,
+    stalled: AtomicBool,
+    /// The latest bytes, to be shown when a test fails and searched for sequences.
+    raw: Mutex<Vec<u8>>,
+}
+
+fn nonzero(number: u16) -> NonZeroU16 {
+    NonZeroU16::new(number).unwrap()
+}
+
+fn size(columns: u16, rows: u16) -> PtySize {
+    PtySize {
+        rows,
+        cols: columns,
+        pixel_width: 0,
+        pixel_height: 0,
+    }
+}
+
+/// The program, in an environment in which nothing of this one's matters.
+pub fn program(arguments: &[&str]) -> CommandBuilder {
+    let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_maxq-lab"));
+    command.args(arguments);
+    in_environment(command)
+}
+
+/// A command in such an environment.
+pub fn in_environment(mut command: CommandBuilder) -> CommandBuilder {
+    command.env("TERM", "xterm-256color");
+    command.env("LC_ALL", "C.UTF-8");
+    command.env_remove("NO_COLOR");
+    command
+}
+
+impl Pty {
+    /// Starts a command in a new terminal.
+    pub fn start(columns: u16, rows: u16, command: CommandBuilder) -> Self {
+        let pair = native_pty_system().openpty(size(columns, rows)).unwrap();
+        let modes_before = modes(pair.master.as_ref());
+        let mut reader = pair.master.try_clone_reader().unwrap();
+        let keys = pair.master.take_writer().unwrap();
+        let child = pair.slave.spawn_command(command).unwrap();
+        drop(pair.slave);
+        let shown = Arc::new(Shown {
+            parser: Mutex::new(vt100::Parser::new(nonzero(rows), nonzero(columns), 0)),
+            bytes: AtomicU64::new(0),
+            stalled: AtomicBool::new(false),
+            raw: Mutex::new(Vec::new()),
+        });
+        let showing = Arc::clone(&shown);
+        thread::spawn(move || {
+            let mut buffer = [0; 1 << 14];
+            while let Ok(count) = reader.read(&mut buffer) {
+                if count == 0 {
+                    return;
+                }
+                showing.take(&buffer[..count]);
+                while showing.stalled.load(Ordering::SeqCst) {
+                    thread::sleep(LOOK);
+                }
+            }
+        });
+        Self {
+            master: Some(pair.master),
+            keys: Some(keys),
+            child,
+            shown,
+            modes_before,
+        }
+    }
+
+    /// The text on the screen.
+    pub fn screen(&self) -> String {
+        self.shown.parser.lock().unwrap().screen().contents()
+    }
+
+    /// Bytes that came from the program.
+    pub fn bytes(&self) -> u64 {
+        self.shown.bytes.load(Ordering::SeqCst)
+    }
+
+    /// All that came from the program and is still kept.
+    pub fn raw(&self) -> Vec<u8> {
+        self.shown.raw.lock().unwrap().clone()
+    }
+
+    /// Waits until something holds; shows the screen if it never does.
+    pub fn wait(&self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
+        let begun = Instant::now();
+        while !holds(self) {
+            if begun.elapsed() > PATIENCE {
+                panic!("waiting for {what}; the screen is:\n{}", self.screen());
+            }
+            thread::sleep(LOOK);
+        }
+    }
+
+    /// Waits until a text is on the screen.
+    pub fn wait_for(&self, text: &str) {
+        self.wait(&format!("{text:?}"), |pty| pty.screen().contains(text));
+    }
+
+    /// Waits until a text is not on the screen.
+    pub fn wait_gone(&self, text: &str) {
+        self.wait(&format!("no {text:?}"), |pty| !pty.screen().contains(text));
+    }
+
+    /// Presses keys.
+    pub fn press(&mut self, keys: &str) {
+        self.send(keys.as_bytes());
+    }
+
+    /// Sends bytes as a keyboard would.
+    pub fn send(&mut self, bytes: &[u8]) {
+        let keys = self.keys.as_mut().unwrap();
+        keys.write_all(bytes).unwrap();
+        keys.flush().unwrap();
+    }
+
+    /// Gives the window another size.
+    pub fn resize(&mut self, columns: u16, rows: u16) {
+        let master = self.master.as_ref().unwrap();
+        master.resize(size(columns, rows)).unwrap();
+        let mut parser = self.shown.parser.lock().unwrap();
+        parser.set_size(nonzero(rows), nonzero(columns));
+    }
+
+    /// From now on nobody reads what the program writes, or somebody does again.
+    pub fn stall(&self, stalled: bool) {
+        self.shown.stalled.store(stalled, Ordering::SeqCst);
+    }
+
+    /// The program's process id.
+    pub fn id(&self) -> u32 {
+        self.child.process_id().unwrap()
+    }
+
+    /// Sends the program a signal.
+    pub fn signal(&self, name: &str) {
+        signal(name, self.id());
+    }
+
+    /// Pulls the terminal from under the program.
+    pub fn hang_up(&mut self) {
+        self.stall(false);
+        self.keys = None;
+        self.master = None;
+    }
+
+    /// Waits until the program has ended.
+    pub fn ended(&mut self) -> ExitStatus {
+        let begun = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status;
+            }
+            if begun.elapsed() > PATIENCE {
+                panic!("the program does not end; the screen is:\n{}", self.screen());
+            }
+            thread::sleep(LOOK);
+        }
+    }
+
+    /// Whether the program has the screen.
+    pub fn is_taken(&self) -> bool {
+        let parser = self.shown.parser.lock().unwrap();
+        parser.screen().alternate_screen()
+    }
+
+    /// Waits until the terminal is as it was before the program: the line's modes, the main
+    /// screen, the cursor, the mouse, pasting.
+    pub fn wait_given_back(&self) {
+        self.wait("the terminal's modes", |pty| pty.modes() == pty.modes_before);
+        self.wait("the screen", |pty| {
+            let parser = pty.shown.parser.lock().unwrap();
+            let screen = parser.screen();
+            !screen.alternate_screen()
+                && !screen.hide_cursor()
+                && !screen.bracketed_paste()
+                && screen.mouse_protocol_mode() == vt100::MouseProtocolMode::None
+                && screen.fgcolor() == vt100::Color::Default
+        });
+    }
+
+    /// The modes of the line, to be compared.
+    pub fn modes(&self) -> String {
+        modes(self.master.as_ref().unwrap().as_ref())
+    }
+}
+
+impl Drop for Pty {
+    fn drop(&mut self) {
+        self.stall(false);
+        let _ended = self.child.kill();
+        let _reaped = self.child.wait();
+    }
+}
+
+impl Shown {
+    fn take(&self, bytes: &[u8]) {
+        self.parser.lock().unwrap().process(bytes);
+        let mut raw = self.raw.lock().unwrap();
+        raw.extend_from_slice(bytes);
+        if raw.len() > 1 << 22 {
+            raw.drain(..1 << 21);
+        }
+        self.bytes.fetch_add(bytes.len() as u64, Ordering::SeqCst);
+    }
+}
+
+fn modes(master: &dyn MasterPty) -> String {
+    format!("{:?}", master.get_termios())
+}
+
+/// Sends a process a signal.
+pub fn signal(name: &str, process: u32) {
+    let mut kill = std::process::Command::new("kill");
+    let sent = kill.args(["-s", name, &process.to_string()]).status();
+    assert!(sent.unwrap().success(), "kill -s {name} {process}");
+}
+
+/// Processor time that a process has used, in seconds; `None` when it is no more.
+pub fn processor_seconds(process: u32) -> Option<f64> {
+    let stat = std::fs::read_to_string(Path::new("/proc").join(process.to_string()).join("stat"));
+    let stat = stat.ok()?;
+    // The name of the program, in brackets, may hold anything.
+    let fields: Vec<_> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |at: usize| fields.get(at)?.parse::<f64>().ok();
+    // Linux has counted a hundred ticks a second towards programs for decades.
+    Some((ticks(11)? + ticks(12)?) / 100.0)
+}
