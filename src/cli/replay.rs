@@ -36,7 +36,9 @@ pub(super) fn main(args: &Args) -> Done {
     let (scenario, seed) = (recording.manifest.scenario.clone(), recording.manifest.seed);
     let app = outfit.dashboard(Mode::Replay, scenario, seed, &args.run_dir)?;
     let goes_on = recording.life == Life::Computing;
-    let exit = args.show.session(app, Source::recorded(recording), &signals)?;
+    let exit = args
+        .show
+        .session(app, Source::recorded(recording), &signals)?;
     if goes_on {
         let folder = args.run_dir.display();
         output::message(&format!(

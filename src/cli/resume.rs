@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::output::{self, Done};
 use super::live;
+use super::output::{self, Done};
 use super::run::How;
 use super::signals::Caught;
 use crate::lab::{Invocation, RunFolder, resume};

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::output::{Done, Format};
 use super::live::{self, OnHangup};
+use super::output::{Done, Format};
 use super::show::Show;
 use super::signals::Caught;
 use super::source::Source;
@@ -95,7 +95,14 @@ impl How {
     /// terminal.
     pub(super) fn resume_headless(&self) -> Vec<String> {
         let (threads, keep) = (self.threads.to_string(), self.keep.to_string());
-        let arguments = ["resume", "--headless", "--threads", &threads, "--keep", &keep];
+        let arguments = [
+            "resume",
+            "--headless",
+            "--threads",
+            &threads,
+            "--keep",
+            &keep,
+        ];
         arguments.map(String::from).to_vec()
     }
 }

@@ -95,7 +95,11 @@ impl Show {
         match &self.theme {
             Some(theme) => {
                 let known = |name: &String| name == theme;
-                let names: Vec<_> = config.themes.iter().map(|theme| theme.name.clone()).collect();
+                let names: Vec<_> = config
+                    .themes
+                    .iter()
+                    .map(|theme| theme.name.clone())
+                    .collect();
                 if !names.iter().any(known) {
                     let allowed = names.join(", ");
                     return Err(format!("--theme: found {theme:?}; allowed: {allowed}").into());

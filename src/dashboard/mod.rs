@@ -18,6 +18,8 @@
 //! | `look` | themes, signs, lines of text, the canvas that arenas are drawn on |
 //! | `views` | one file a view; a view in a corner of the overview is a panel |
 //! | `export` | a frame as text, ANSI or SVG |
+//! | [`terminal`] | the terminal's life: taken, lent to the shell, given back |
+//! | [`session`] | who drives an [`App`] on a terminal: events, keys, signals, frames |
 //!
 //! A view is added by a variant of [`ViewId`], an entry in its table, and a file
 //! that implements `View`.

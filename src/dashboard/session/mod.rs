@@ -291,7 +291,9 @@ fn describe(life: Life) -> Option<&'static str> {
     match life {
         Life::Computing | Life::Over => None,
         Life::Absent => Some("the run folder is gone; waiting for it"),
-        Life::Silent => Some("no sign of life: the run died or froze, or its folder is out of reach"),
+        Life::Silent => {
+            Some("no sign of life: the run died or froze, or its folder is out of reach")
+        }
         Life::Stopped => Some("nobody computes this run; it can be resumed"),
     }
 }

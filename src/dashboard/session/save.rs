@@ -14,7 +14,10 @@ const MOST: u32 = 10_000;
 /// # Errors
 /// When the operating system refuses, or no name is left.
 pub(super) fn save(folder: &Path, export: &Export) -> io::Result<PathBuf> {
-    let (stem, extension) = export.name.rsplit_once('.').unwrap_or((&export.name, "txt"));
+    let (stem, extension) = export
+        .name
+        .rsplit_once('.')
+        .unwrap_or((&export.name, "txt"));
     for number in 1..=MOST {
         let path = folder.join(match number {
             1 => format!("{stem}.{extension}"),
