@@ -9,7 +9,7 @@ use std::num::NonZeroU16;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
@@ -25,6 +25,7 @@ pub struct Pty {
     keys: Option<Box<dyn Write + Send>>,
     pub child: Box<dyn Child + Send + Sync>,
     shown: Arc<Shown>,
+    reader: Option<JoinHandle<()>>,
     modes_before: String,
 }
 
@@ -33,6 +34,7 @@ struct Shown {
     parser: Mutex<vt100::Parser>,
     bytes: AtomicU64,
     stalled: AtomicBool,
+    closing: AtomicBool,
     /// The latest bytes, to be shown when a test fails and searched for sequences.
     raw: Mutex<Vec<u8>>,
 }
@@ -78,18 +80,19 @@ impl Pty {
             parser: Mutex::new(vt100::Parser::new(nonzero(rows), nonzero(columns), 0)),
             bytes: AtomicU64::new(0),
             stalled: AtomicBool::new(false),
+            closing: AtomicBool::new(false),
             raw: Mutex::new(Vec::new()),
         });
         let showing = Arc::clone(&shown);
-        thread::spawn(move || {
+        let reader = thread::spawn(move || {
             let mut buffer = [0; 1 << 14];
             while let Ok(count) = reader.read(&mut buffer) {
-                if count == 0 {
-                    return;
-                }
                 showing.take(&buffer[..count]);
                 while showing.stalled.load(Ordering::SeqCst) {
                     thread::sleep(LOOK);
+                }
+                if count == 0 || showing.closing.load(Ordering::SeqCst) {
+                    return;
                 }
             }
         });
@@ -98,6 +101,7 @@ impl Pty {
             keys: Some(keys),
             child,
             shown,
+            reader: Some(reader),
             modes_before,
         }
     }
@@ -173,9 +177,22 @@ impl Pty {
         signal(name, self.id());
     }
 
-    /// Pulls the terminal from under the program.
+    /// Pulls the terminal from under the program, which must be one that draws. Before that it
+    /// sees keys that nobody pressed: Enter and Ctrl-D.
     pub fn hang_up(&mut self) {
         self.stall(false);
+        self.shown.closing.store(true, Ordering::SeqCst);
+        // The reader has the terminal until something comes, and a window of another size
+        // makes the program draw.
+        let reader = self.reader.take().unwrap();
+        let mut columns = 100;
+        while !reader.is_finished() {
+            let master = self.master.as_ref().unwrap();
+            master.resize(size(columns, 40)).unwrap();
+            columns = 201 - columns;
+            thread::sleep(LOOK);
+        }
+        reader.join().unwrap();
         self.keys = None;
         self.master = None;
     }
@@ -188,7 +205,10 @@ impl Pty {
                 return status;
             }
             if begun.elapsed() > PATIENCE {
-                panic!("the program does not end; the screen is:\n{}", self.screen());
+                panic!(
+                    "the program does not end; the screen is:\n{}",
+                    self.screen()
+                );
             }
             thread::sleep(LOOK);
         }
@@ -203,7 +223,9 @@ impl Pty {
     /// Waits until the terminal is as it was before the program: the line's modes, the main
     /// screen, the cursor, the mouse, pasting.
     pub fn wait_given_back(&self) {
-        self.wait("the terminal's modes", |pty| pty.modes() == pty.modes_before);
+        self.wait("the terminal's modes", |pty| {
+            pty.modes() == pty.modes_before
+        });
         self.wait("the screen", |pty| {
             let parser = pty.shown.parser.lock().unwrap();
             let screen = parser.screen();

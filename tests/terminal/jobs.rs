@@ -1,0 +1,121 @@
+//! The shell's jobs: Ctrl-Z, `fg`, `bg`.
+
+use portable_pty::CommandBuilder;
+
+use crate::pty::{Pty, in_environment};
+use crate::{ENDLESS, Place};
+
+/// A shell with job control and a prompt that nothing else looks like.
+fn shell() -> Pty {
+    let mut command = CommandBuilder::new("/bin/sh");
+    command.arg("-i");
+    let mut command = in_environment(command);
+    command.env("PS1", "ready% ");
+    command.env_remove("ENV");
+    let pty = Pty::start(120, 40, command);
+    pty.wait_for("ready%");
+    pty
+}
+
+fn quoted(arguments: &[String]) -> String {
+    let quoted: Vec<_> = arguments.iter().map(|one| format!("'{one}'")).collect();
+    quoted.join(" ")
+}
+
+fn start_in_shell(place: &Place) -> Pty {
+    let mut pty = shell();
+    let program = env!("CARGO_BIN_EXE_maxq-lab");
+    pty.press(&format!("{program} {}\n", quoted(&place.run(ENDLESS))));
+    pty.wait_for("RUNNING");
+    pty
+}
+
+#[test]
+fn ctrl_z_lends_the_terminal_to_the_shell_and_fg_takes_it_again() {
+    let place = Place::new();
+    let mut pty = start_in_shell(&place);
+    for _ in 0..2 {
+        pty.press("\u{1a}");
+        pty.wait_given_back();
+        pty.press("echo it is $((40 + 2))\n");
+        pty.wait_for("it is 42");
+        let before = place.lines();
+        pty.press("fg\n");
+        pty.wait_for("RUNNING");
+        assert!(pty.is_taken());
+        crate::wait_until("evolution", || place.lines() > before);
+    }
+    pty.press("qy");
+    pty.wait_given_back();
+    pty.wait_for("go on with: maxq-lab resume");
+    place.assert_saved();
+}
+
+#[test]
+fn in_the_background_evolution_goes_on_and_the_terminal_is_the_shells() {
+    let place = Place::new();
+    let mut pty = start_in_shell(&place);
+    pty.press("\u{1a}");
+    pty.wait_given_back();
+    pty.press("bg\n");
+    place.wait_for_evolution();
+    // What is typed reaches the shell.
+    pty.press("echo it is $((40 + 2))\n");
+    pty.wait_for("it is 42");
+    place.wait_for_evolution();
+    pty.press("jobs\n");
+    pty.wait_for("Running");
+    pty.press("fg\n");
+    pty.wait_for("RUNNING");
+    pty.press("p");
+    pty.wait_for("PAUSED");
+    pty.press("qy");
+    pty.wait_given_back();
+    place.assert_saved();
+}
+
+#[test]
+fn started_in_the_background_it_waits_for_the_terminal_and_evolution_does_not() {
+    let place = Place::new();
+    let mut pty = shell();
+    let program = env!("CARGO_BIN_EXE_maxq-lab");
+    pty.press(&format!("{program} {} &\n", quoted(&place.run(ENDLESS))));
+    place.wait_for_evolution();
+    pty.press("echo it is $((40 + 2))\n");
+    pty.wait_for("it is 42");
+    assert!(!pty.is_taken());
+    pty.press("fg\n");
+    pty.wait_for("RUNNING");
+    pty.press("qy");
+    pty.wait_for("go on with: maxq-lab resume");
+    pty.wait_given_back();
+}
+
+#[test]
+fn stopped_by_force_and_continued_it_draws_everything_again() {
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    pty.press("p");
+    pty.wait_for("PAUSED");
+    pty.signal("STOP");
+    let before = pty.bytes();
+    pty.signal("CONT");
+    pty.wait("a whole frame", |pty| pty.bytes() > before + 2000);
+    pty.press("qy");
+    pty.ended();
+    pty.wait_given_back();
+}
+
+#[test]
+fn without_a_shell_there_is_nobody_to_continue_the_program_so_it_does_not_stop() {
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    pty.press("\u{1a}");
+    pty.wait_for("no shell waits");
+    place.wait_for_evolution();
+    pty.signal("TSTP");
+    place.wait_for_evolution();
+    pty.press("qy");
+    pty.ended();
+    pty.wait_given_back();
+}

@@ -1,0 +1,133 @@
+//! Start, pause, look, step, resize, leave.
+
+use crate::pty::{Pty, program};
+use crate::{ENDLESS, Place, exists, wait_for_end};
+
+#[test]
+fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    pty.press("p");
+    pty.wait_for("PAUSED");
+    let before = Place::generation(&pty).unwrap();
+    let lines = place.lines();
+    pty.press("n");
+    pty.wait("the next generation", |pty| {
+        Place::generation(pty) == Some(before + 1) && pty.screen().contains("PAUSED")
+    });
+    assert_eq!(place.lines(), lines + 1);
+    pty.press("6");
+    pty.wait_for("rank");
+    pty.press("?");
+    pty.wait_for("Help");
+    pty.press("\u{1b}");
+    pty.wait_gone("Help");
+    pty.press("q");
+    pty.wait_for("Save the run and leave?");
+    pty.press("n");
+    pty.wait_gone("Save the run and leave?");
+    pty.press("qy");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+    pty.wait_for("go on with: maxq-lab resume");
+    place.assert_saved();
+
+    let mut pty = place.on("resume");
+    pty.wait("the run to go on", |pty| {
+        Place::generation(pty) > Some(before + 1)
+    });
+    pty.press("\u{3}y");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+    place.assert_saved();
+}
+
+#[test]
+fn the_dashboard_follows_the_size_of_the_window() {
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    for (columns, rows) in [(80, 24), (200, 60), (120, 40)] {
+        pty.resize(columns, rows);
+        let last_line = |pty: &Pty| pty.screen().lines().nth(usize::from(rows) - 1).is_some();
+        pty.wait(&format!("{columns}x{rows}"), |pty| {
+            last_line(pty) && pty.screen().contains("RUNNING") && pty.screen().contains("quit")
+        });
+    }
+    pty.resize(20, 5);
+    pty.wait_for("too small");
+    pty.resize(120, 40);
+    pty.wait_for("RUNNING");
+    pty.press("qy");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+}
+
+#[test]
+fn a_run_that_is_over_stays_on_the_screen_and_its_result_is_printed() {
+    let place = Place::new();
+    let arguments = place.run(&["evolution.generation_limit=3"]);
+    let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
+    let mut pty = Pty::start(120, 40, program(&arguments));
+    pty.wait_for("FINISHED");
+    pty.press("q");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+    pty.wait_for("best individual");
+    assert!(exists(&place.folder, "summary.json"));
+}
+
+#[test]
+fn the_mouse_is_taken_when_it_is_asked_for_and_given_back() {
+    let place = Place::new();
+    let mouse = |pty: &Pty| pty.raw().windows(8).any(|bytes| bytes == b"\x1b[?1006h");
+    let mut pty = place.start(&["--mouse"]);
+    assert!(mouse(&pty));
+    pty.press("\u{1b}[<65;10;10M");
+    pty.press("qy");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    assert!(!mouse(&pty));
+    pty.signal("TERM");
+    wait_for_end(&mut pty, 143);
+}
+
+#[test]
+fn a_run_is_handed_over_to_a_process_without_a_terminal() {
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    pty.press("q");
+    pty.wait_for("detach");
+    pty.press("d");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+    pty.wait_for("goes on with the run");
+    let screen = pty.screen();
+    let before = screen.split(" goes on with the run").next().unwrap();
+    let process: u32 = before.rsplit(' ').next().unwrap().parse().unwrap();
+    pty.hang_up();
+    place.wait_for_evolution();
+    crate::pty::signal("TERM", process);
+    crate::wait_until("the end", || !exists(&place.folder, "pulse.json"));
+    place.assert_saved();
+}
+
+#[test]
+fn what_is_wrong_with_a_theme_or_a_key_map_is_told_before_anything_is_computed() {
+    let place = Place::new();
+    for wrong in [
+        &["--theme", "pink"][..],
+        &["--fps", "0"],
+        &["--config", "/nowhere.toml"],
+    ] {
+        let arguments = place.run(ENDLESS);
+        let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
+        let mut pty = Pty::start(120, 40, program(&[&arguments, wrong].concat()));
+        assert_ne!(pty.ended().exit_code(), 0);
+        pty.wait_for(wrong[1]);
+        pty.wait_given_back();
+        assert!(!place.folder.exists());
+    }
+}

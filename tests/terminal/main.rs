@@ -1,0 +1,118 @@
+//! Contract 5, on the real program in a real terminal: the terminal is given back on every
+//! way out, and whatever happens to it the run is not lost, not slowed and not changed.
+//!
+//! Why it matters: the dashboard is left open all day over lines that drop, in shells that
+//! stop and continue it, in windows that change. A terminal left in raw mode, a run lost with
+//! a line, or a process that spins after its terminal has gone costs a person's work.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod jobs;
+mod life;
+mod others;
+mod panics;
+mod pty;
+mod signals;
+mod storms;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use maxq_lab::lab::Checkpoint;
+use tempfile::TempDir;
+
+use common::{SHORT, lines, wait_until};
+use pty::{Pty, program};
+
+/// Settings with which evolution goes on until it is stopped: chance decides, so that it
+/// converges late, and it may live long.
+const ENDLESS: &[&str] = &[
+    "evolution.selection=random",
+    "evolution.generation_limit=100000",
+    "evolution.trials_per_generation=64",
+];
+
+/// A run in a folder of its own, as it is started by every test.
+struct Place {
+    _parent: TempDir,
+    folder: PathBuf,
+}
+
+impl Place {
+    fn new() -> Self {
+        let parent = TempDir::new().unwrap();
+        let folder = parent.path().join("run");
+        Self {
+            _parent: parent,
+            folder,
+        }
+    }
+
+    /// Arguments that run `smoke`, made short, with settings.
+    fn run(&self, settings: &[&str]) -> Vec<String> {
+        let mut arguments = vec!["run", "smoke", "--threads", "1", "--keep", "none", "--out"];
+        arguments.push(self.text());
+        for setting in SHORT.iter().chain(settings) {
+            arguments.extend(["--set", setting]);
+        }
+        arguments.into_iter().map(String::from).collect()
+    }
+
+    fn text(&self) -> &str {
+        self.folder.to_str().unwrap()
+    }
+
+    /// The dashboard over an evolution that goes on, with more arguments.
+    fn start(&self, more: &[&str]) -> Pty {
+        let arguments = self.run(ENDLESS);
+        let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
+        let pty = Pty::start(120, 40, program(&[&arguments, more].concat()));
+        pty.wait_for("RUNNING");
+        assert!(pty.is_taken());
+        pty
+    }
+
+    /// Another command on the run folder.
+    fn on(&self, command: &str) -> Pty {
+        Pty::start(120, 40, program(&[command, self.text()]))
+    }
+
+    /// Lines of the log.
+    fn lines(&self) -> usize {
+        lines(&self.folder.join("events.jsonl"))
+    }
+
+    /// Waits until evolution has gone on.
+    fn wait_for_evolution(&self) {
+        let before = self.lines();
+        wait_until("evolution", || self.lines() > before + 2);
+    }
+
+    /// Fails if the latest state is not saved: the start and each generation are a line.
+    fn assert_saved(&self) {
+        let text = fs::read_to_string(self.folder.join("checkpoint.json")).unwrap();
+        let saved = Checkpoint::from_text(&text).unwrap();
+        assert_eq!(saved.generation, self.lines() as u64 - 1);
+        assert!(!self.folder.join("summary.json").exists());
+    }
+
+    /// The generation on the screen.
+    fn generation(pty: &Pty) -> Option<u64> {
+        let screen = pty.screen();
+        let after = screen.lines().next()?.split("generation ").nth(1)?;
+        after.split_whitespace().next()?.parse().ok()
+    }
+}
+
+/// What a program said last.
+fn wait_for_end(pty: &mut Pty, code: u32) {
+    let status = pty.ended();
+    assert_eq!(status.exit_code(), code, "{}", pty.screen());
+}
+
+fn exists(folder: &Path, name: &str) -> bool {
+    folder.join(name).exists()
+}

@@ -1,0 +1,118 @@
+//! Runs of other processes and of other days; every scenario that is shipped.
+
+use std::process::{Child, Stdio};
+
+use maxq_lab::scenario::EMBEDDED;
+
+use crate::common::program as plain_program;
+use crate::pty::{Pty, program};
+use crate::{ENDLESS, Place, wait_for_end, wait_until};
+
+fn headless(place: &Place) -> Child {
+    let mut command = plain_program();
+    command.args(place.run(ENDLESS)).arg("--headless");
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().unwrap()
+}
+
+#[test]
+fn a_run_is_watched_from_before_it_begins_until_it_dies() {
+    let place = Place::new();
+    let mut pty = place.on("watch");
+    pty.wait_for("waiting for a run");
+    let mut run = headless(&place);
+    pty.wait_for("RUNNING");
+    let first = Place::generation(&pty);
+    pty.wait("more generations", |pty| Place::generation(pty) > first);
+    pty.press("p");
+    pty.wait_for("watched, not steered");
+    run.kill().unwrap();
+    run.wait().unwrap();
+    pty.wait_for("STOPPED");
+    let mut resumed = plain_program();
+    resumed.args(["resume", "--headless"]).arg(&place.folder);
+    resumed.stdout(Stdio::null()).stderr(Stdio::null());
+    let mut resumed = resumed.spawn().unwrap();
+    pty.wait_for("RUNNING");
+    pty.press("q");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+    // Watching has not touched it.
+    place.wait_for_evolution();
+    resumed.kill().unwrap();
+    resumed.wait().unwrap();
+}
+
+#[test]
+fn waiting_for_a_run_can_be_given_up() {
+    let place = Place::new();
+    let mut pty = place.on("watch");
+    pty.wait_for("waiting for a run");
+    pty.press("\u{3}");
+    wait_for_end(&mut pty, 130);
+    pty.wait_given_back();
+}
+
+#[test]
+fn a_dead_run_is_replayed() {
+    let place = Place::new();
+    let mut run = headless(&place);
+    wait_until("generations", || place.lines() > 4);
+    run.kill().unwrap();
+    run.wait().unwrap();
+    let mut pty = place.on("replay");
+    pty.wait_for("UNFINISHED");
+    let last = place.lines() as u64 - 1;
+    pty.wait("the last generation", |pty| {
+        Place::generation(pty) == Some(last)
+    });
+    pty.press("[");
+    pty.wait("the one before", |pty| {
+        Place::generation(pty) == Some(last - 1)
+    });
+    pty.press("q");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+}
+
+#[test]
+fn a_view_in_which_nothing_moves_sends_nothing() {
+    let place = Place::new();
+    let mut run = place.start(&[]);
+    run.press("qy");
+    wait_for_end(&mut run, 0);
+    let mut pty = place.on("replay");
+    pty.wait_for("UNFINISHED");
+    pty.press(" ");
+    // Silence is a time in which nothing comes; messages have their time and go.
+    let mut last = (pty.bytes(), std::time::Instant::now());
+    pty.wait("two seconds of silence", |pty| {
+        if pty.bytes() != last.0 {
+            last = (pty.bytes(), std::time::Instant::now());
+        }
+        last.1.elapsed().as_secs() >= 2
+    });
+    pty.press("q");
+    wait_for_end(&mut pty, 0);
+}
+
+#[test]
+fn every_scenario_that_is_shipped_has_its_dashboard() {
+    for embedded in EMBEDDED {
+        let place = Place::new();
+        let mut pty = Pty::start(
+            120,
+            40,
+            program(&["run", embedded.name, "--out", place.text()]),
+        );
+        pty.wait_for(embedded.name);
+        pty.wait("generation 1", |pty| Place::generation(pty) >= Some(1));
+        for view in ["2", "3", "4", "5", "6", "1"] {
+            pty.press(view);
+        }
+        pty.signal("TERM");
+        let code = pty.ended().exit_code();
+        assert!([0, 143].contains(&code), "{}: {code}", embedded.name);
+        pty.wait_given_back();
+    }
+}

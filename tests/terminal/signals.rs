@@ -1,0 +1,97 @@
+//! Signals, and lines that drop.
+
+use crate::common::wait_until;
+use crate::pty::{Pty, processor_seconds, program};
+use crate::{Place, exists, wait_for_end};
+
+#[test]
+fn a_signal_saves_the_run_and_gives_the_terminal_back() {
+    for (signal, code) in [("TERM", 143), ("INT", 130)] {
+        let place = Place::new();
+        let mut pty = place.start(&[]);
+        place.wait_for_evolution();
+        pty.signal(signal);
+        wait_for_end(&mut pty, code);
+        pty.wait_given_back();
+        place.assert_saved();
+    }
+}
+
+#[test]
+fn a_paused_run_hears_signals_too() {
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    pty.press("p");
+    pty.wait_for("PAUSED");
+    pty.signal("TERM");
+    wait_for_end(&mut pty, 143);
+    pty.wait_given_back();
+    place.assert_saved();
+}
+
+#[test]
+fn when_the_line_drops_the_run_goes_on_to_its_end() {
+    let place = Place::new();
+    let mut arguments = place.run(&["evolution.selection=random"]);
+    arguments.extend(["--set", "evolution.generation_limit=40"].map(String::from));
+    let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
+    let mut pty = Pty::start(120, 40, program(&arguments));
+    pty.wait("the dashboard", Pty::is_taken);
+    // Nobody could let it go on: what waits goes on when its person is cut off.
+    pty.press("p");
+    wait_until("the pulse", || exists(&place.folder, "pulse.json"));
+    pty.hang_up();
+    wait_for_end(&mut pty, 0);
+    assert!(exists(&place.folder, "summary.json"));
+}
+
+#[test]
+fn a_signal_that_says_that_the_line_dropped_is_believed() {
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    pty.signal("HUP");
+    pty.wait_given_back();
+    place.wait_for_evolution();
+    pty.signal("HUP");
+    place.wait_for_evolution();
+    let watch = place.on("watch");
+    watch.wait_for("RUNNING");
+    pty.signal("TERM");
+    wait_for_end(&mut pty, 143);
+    place.assert_saved();
+    watch.wait_for("STOPPED");
+}
+
+#[test]
+fn when_the_line_drops_the_run_is_saved_if_that_is_wanted() {
+    let place = Place::new();
+    let mut pty = place.start(&["--on-hangup", "stop"]);
+    pty.hang_up();
+    wait_for_end(&mut pty, 129);
+    place.assert_saved();
+}
+
+#[test]
+fn nobody_spins_when_the_terminal_has_gone() {
+    let place = Place::new();
+    let mut run = place.start(&[]);
+    run.press("qy");
+    wait_for_end(&mut run, 0);
+    for command in ["replay", "watch"] {
+        let mut pty = place.on(command);
+        pty.wait_for("smoke");
+        pty.hang_up();
+        wait_for_end(&mut pty, 129);
+    }
+    // A run that goes on headless uses the processor for evolution alone: paused it is idle.
+    let place = Place::new();
+    let mut pty = place.start(&["--headless"]);
+    pty.hang_up();
+    place.wait_for_evolution();
+    pty.signal("STOP");
+    pty.signal("CONT");
+    place.wait_for_evolution();
+    assert!(processor_seconds(pty.id()).is_some());
+    pty.signal("TERM");
+    wait_for_end(&mut pty, 143);
+}
