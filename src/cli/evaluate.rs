@@ -95,7 +95,7 @@ impl WorldTask for Task {
         };
         let workers = Workers::new(usize::from(self.args.threads))?;
         let started = Instant::now();
-        let bar = bar(self.args.repeats);
+        let bar = bar(self.args.repeats, true);
         bar.set_message("repeats");
         let show = |done| bar.set_position(done as u64);
         let evaluation = evaluate(&experiment, &tree, &protocol, &workers, &self.gate, show)?;

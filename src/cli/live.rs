@@ -4,6 +4,7 @@ use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::thread;
+use std::time::Duration;
 
 use clap::ValueEnum;
 use signal_hook::consts::SIGHUP;
@@ -13,10 +14,13 @@ use super::progress;
 use super::run::{How, describe};
 use super::show::{Outfit, Show};
 use super::signals::{Caught, Ended};
-use crate::dashboard::Mode;
 use crate::dashboard::session::{Exit, Source};
 use crate::dashboard::terminal;
+use crate::lab::specimen::bench;
 use crate::lab::{Outcome, Run};
+
+/// Longest wait for a terminal to take the last words.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// What becomes of a run when the line drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -40,8 +44,10 @@ pub(super) fn outfit(how: &How) -> Result<Option<Outfit>, Failure> {
 /// began, so that none falls between.
 pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &How) -> Done {
     let ended = Ended::default();
+    // There is a line that can drop. Without one SIGHUP asks the program to end.
+    let survives = how.on_hangup == OnHangup::Detach && terminal::is_attached();
     let exit = match outfit {
-        Some(outfit) => Some(show(&run, outfit, &signals, how)?),
+        Some(outfit) => Some(show(&run, outfit, &signals)?),
         None => None,
     };
     let went_headless = match exit {
@@ -54,12 +60,15 @@ pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &Ho
         Some(_) => false,
     };
     if went_headless {
-        headless(&run, signals, &ended, how)?;
+        headless(&run, signals, &ended, survives)?;
     } else {
         run.controls.stop();
     }
     let scenario = run.scenario.clone();
     let outcome = run.join()?;
+    if let (Some(Exit::Signal(signal)), true) = (exit, outcome.stopped) {
+        end_within(PATIENCE, 128 + signal)?;
+    }
     match how.format {
         Format::Json => output::json(&outcome)?,
         Format::Text => output::text(&describe(&outcome, &scenario)?)?,
@@ -80,10 +89,10 @@ pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &Ho
     }
 }
 
-fn show(run: &Run, outfit: Outfit, signals: &Caught, how: &How) -> Result<Exit, Failure> {
-    let app = outfit.dashboard(Mode::Live, run.scenario.clone(), run.seed, &run.folder)?;
+fn show(run: &Run, outfit: Outfit, signals: &Caught) -> Result<Exit, Failure> {
+    let what = bench(run.scenario.clone(), run.seed)?;
     let source = Source::live(&run.events, &run.controls);
-    how.show.session(app, source, signals)
+    outfit.show(what, &run.folder, source, signals)
 }
 
 /// The line dropped. Returns whether the run goes on.
@@ -100,21 +109,16 @@ fn hang_up(run: &Run, ended: &Ended, on_hangup: OnHangup) -> bool {
     goes_on
 }
 
-/// Follows a run to its end without a dashboard. SIGHUP means that the line dropped where
-/// there is one, and is one more signal that ends the program where there is none.
-fn headless(run: &Run, signals: Caught, ended: &Ended, how: &How) -> Result<(), Failure> {
+/// Follows a run to its end without a dashboard, and through the drop of the line if it
+/// `survives` that.
+fn headless(run: &Run, signals: Caught, ended: &Ended, survives: bool) -> Result<(), Failure> {
     let (controls, ended) = (run.controls.clone(), ended.clone());
-    let detach = how.on_hangup == OnHangup::Detach && terminal::is_attached();
-    let mut attached = true;
     thread::Builder::new()
         .name(String::from("ending"))
         .spawn(move || {
             for signal in &signals.heard {
-                if signal == SIGHUP && detach {
-                    if attached {
-                        attached = false;
-                        let _detached = terminal::detach();
-                    }
+                if signal == SIGHUP && survives {
+                    let _detached = terminal::detach();
                     continue;
                 }
                 ended.by(signal);
@@ -124,6 +128,18 @@ fn headless(run: &Run, signals: Caught, ended: &Ended, how: &How) -> Result<(), 
     let evolution = &run.scenario.evolution;
     let (limit, population) = (evolution.generation_limit, evolution.population_size);
     progress::follow(&run.events, limit, population);
+    Ok(())
+}
+
+/// Ends the program after a time, if it is still there: it was asked to end, the run is
+/// saved, and a terminal that takes nothing must not hold up what is left to say.
+fn end_within(time: Duration, code: i32) -> Result<(), Failure> {
+    thread::Builder::new()
+        .name(String::from("patience"))
+        .spawn(move || {
+            thread::sleep(time);
+            signal_hook::low_level::exit(code);
+        })?;
     Ok(())
 }
 

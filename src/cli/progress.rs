@@ -11,7 +11,7 @@ use crate::lab::Event;
 
 /// Follows a run to its end; draws a bar where standard error is a terminal.
 pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize) {
-    let bar = bar(limit * population as u64);
+    let bar = bar(limit * population as u64, true);
     let mut message = String::from("training the primitive subtasks");
     for event in events {
         match event {
@@ -35,9 +35,9 @@ pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize) {
     bar.finish_and_clear();
 }
 
-/// A bar on standard error, drawn only where that is a terminal.
-pub(super) fn bar(length: u64) -> ProgressBar {
-    let target = match stderr().is_terminal() {
+/// A bar on standard error, drawn only where that is a terminal and `shown` says so.
+pub(super) fn bar(length: u64, shown: bool) -> ProgressBar {
+    let target = match shown && stderr().is_terminal() {
         true => ProgressDrawTarget::stderr_with_hz(5),
         false => ProgressDrawTarget::hidden(),
     };

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use super::output::{self, Done};
 use super::show::{Show, exit_code};
 use super::signals::Caught;
-use crate::dashboard::Mode;
 use crate::dashboard::session::Source;
+use crate::lab::specimen::bench;
 use crate::lab::{Life, Recording};
 
 /// Look at a run that has ended, was stopped, or died.
@@ -33,12 +33,10 @@ pub(super) fn main(args: &Args) -> Done {
     let signals = Caught::now()?;
     let outfit = args.show.outfit()?;
     let recording = Recording::read(&args.run_dir)?;
-    let (scenario, seed) = (recording.manifest.scenario.clone(), recording.manifest.seed);
-    let app = outfit.dashboard(Mode::Replay, scenario, seed, &args.run_dir)?;
+    let manifest = &recording.manifest;
+    let what = bench(manifest.scenario.clone(), manifest.seed)?;
     let goes_on = recording.life == Life::Computing;
-    let exit = args
-        .show
-        .session(app, Source::recorded(recording), &signals)?;
+    let exit = outfit.show(what, &args.run_dir, Source::recorded(recording), &signals)?;
     if goes_on {
         let folder = args.run_dir.display();
         output::message(&format!(

@@ -11,9 +11,9 @@ use crate::dashboard::keys::KeyMap;
 use crate::dashboard::look::{Look, Signs};
 use crate::dashboard::session::{Exit, Session, Source};
 use crate::dashboard::terminal::{Terminal, is_terminal};
-use crate::dashboard::{App, Config, Mode, Setting};
+use crate::dashboard::{App, Config, Mode};
 use crate::hierarchy::Glyphs;
-use crate::scenario::Scenario;
+use crate::lab::specimen::{Archive, Bench};
 
 /// How the dashboard looks.
 #[derive(Clone, Debug, clap::Args)]
@@ -79,6 +79,8 @@ impl Show {
         Ok(Outfit {
             look: Look::new(config.themes, &config.theme, Signs::of(glyphs)),
             keys: config.keys,
+            fps: self.fps,
+            mouse: self.mouse,
         })
     }
 
@@ -111,38 +113,37 @@ impl Show {
         }
         Ok(config)
     }
-
-    /// Shows a dashboard until somebody or something ends it.
-    pub(super) fn session(
-        &self,
-        app: App,
-        source: Source<'_>,
-        signals: &Caught,
-    ) -> Result<Exit, Failure> {
-        let terminal = Terminal::open(self.mouse).map_err(|error| format!("terminal: {error}"))?;
-        let session = Session::new(app, terminal, source, self.fps, Path::new("."));
-        Ok(session.run(&signals.heard)?)
-    }
 }
 
-/// A person's keys and looks.
+/// A person's keys and looks, read and found good.
 #[derive(Debug)]
 pub(super) struct Outfit {
     look: Look,
     keys: KeyMap,
+    fps: f64,
+    mouse: bool,
 }
 
 impl Outfit {
-    /// A dashboard over a run.
-    pub(super) fn dashboard(
+    /// Shows a dashboard over a run until somebody or something ends it.
+    pub(super) fn show(
         self,
-        mode: Mode,
-        scenario: Scenario,
-        seed: u64,
+        what: &'static dyn Bench,
         folder: &Path,
-    ) -> Result<App, Failure> {
-        let setting = Setting::new(scenario, seed, folder.display().to_string())?;
-        Ok(App::new(setting, mode, self.look, self.keys))
+        source: Source<'_>,
+        signals: &Caught,
+    ) -> Result<Exit, Failure> {
+        let (mode, controls) = match &source {
+            Source::Live(live) => (Mode::Live, Some(live.controls().clone())),
+            Source::Watched(_) => (Mode::Watch, None),
+            Source::Recorded(_) => (Mode::Replay, None),
+        };
+        let name = folder.display().to_string();
+        let app = App::new(what, name, mode, self.look, self.keys);
+        let archive = Archive::new(what, folder, controls);
+        let terminal = Terminal::open(self.mouse).map_err(|error| format!("terminal: {error}"))?;
+        let session = Session::new(app, archive, source, folder, terminal, self.fps)?;
+        Ok(session.run(&signals.heard)?)
     }
 }
 

@@ -8,8 +8,8 @@ use crossbeam_channel::select;
 use super::output::{self, Done, Failure};
 use super::show::{Show, exit_code};
 use super::signals::Caught;
-use crate::dashboard::Mode;
 use crate::dashboard::session::{Exit, Source};
+use crate::lab::specimen::bench;
 use crate::lab::{Life, Manifest, News, Watch};
 
 /// Time between two looks at the run folder.
@@ -44,9 +44,8 @@ pub(super) fn main(args: &Args) -> Done {
         Found::Run(manifest) => *manifest,
         Found::Signal(signal) => return exit_code(Exit::Signal(signal)),
     };
-    let (scenario, seed) = (manifest.scenario, manifest.seed);
-    let app = outfit.dashboard(Mode::Watch, scenario, seed, &args.run_dir)?;
-    exit_code(args.show.session(app, Source::Watched(&watch), &signals)?)
+    let what = bench(manifest.scenario, manifest.seed)?;
+    exit_code(outfit.show(what, &args.run_dir, Source::Watched(&watch), &signals)?)
 }
 
 /// What came first.

@@ -120,7 +120,11 @@ impl App {
     fn event(&mut self, event: Event) {
         let desk = &mut self.desk;
         match &event {
-            Event::Progress { control_steps, .. } => desk.pace.steps(*control_steps),
+            Event::Progress { control_steps, .. } => {
+                // A run that is watched may be resumed by somebody.
+                desk.closed = false;
+                desk.pace.steps(*control_steps);
+            }
             Event::Generation(record) => desk.pace.generation(record.generation),
             Event::Paused => desk.stepping = false,
             _ => {}

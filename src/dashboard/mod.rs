@@ -36,8 +36,10 @@ mod model;
 mod overlay;
 mod pace;
 mod panel;
+pub mod session;
 mod sight;
 mod stage;
+pub mod terminal;
 pub mod views;
 
 pub use app::App;

@@ -7,6 +7,7 @@ use crate::{ENDLESS, Place, exists, wait_for_end};
 fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
     let place = Place::new();
     let mut pty = place.start(&[]);
+    pty.wait("a generation", |pty| Place::generation(pty).is_some());
     pty.press("p");
     pty.wait_for("PAUSED");
     let before = Place::generation(&pty).unwrap();
@@ -48,9 +49,14 @@ fn the_dashboard_follows_the_size_of_the_window() {
     let mut pty = place.start(&[]);
     for (columns, rows) in [(80, 24), (200, 60), (120, 40)] {
         pty.resize(columns, rows);
-        let last_line = |pty: &Pty| pty.screen().lines().nth(usize::from(rows) - 1).is_some();
+        // The hints are on the last line, whatever it is.
+        let hints = |pty: &Pty| {
+            let screen = pty.screen();
+            let last = screen.lines().nth(usize::from(rows) - 1);
+            last.is_some_and(|line| line.contains("halt"))
+        };
         pty.wait(&format!("{columns}x{rows}"), |pty| {
-            last_line(pty) && pty.screen().contains("RUNNING") && pty.screen().contains("quit")
+            hints(pty) && pty.screen().contains("RUNNING")
         });
     }
     pty.resize(20, 5);
@@ -99,7 +105,7 @@ fn a_run_is_handed_over_to_a_process_without_a_terminal() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.press("q");
-    pty.wait_for("detach");
+    pty.wait_for("let the run go on without a terminal");
     pty.press("d");
     wait_for_end(&mut pty, 0);
     pty.wait_given_back();

@@ -1,8 +1,8 @@
 //! Signals, and lines that drop.
 
 use crate::common::wait_until;
-use crate::pty::{Pty, processor_seconds, program};
-use crate::{Place, exists, wait_for_end};
+use crate::pty::{Pty, program};
+use crate::{ENDLESS, Place, exists, wait_for_end};
 
 #[test]
 fn a_signal_saves_the_run_and_gives_the_terminal_back() {
@@ -32,7 +32,7 @@ fn a_paused_run_hears_signals_too() {
 #[test]
 fn when_the_line_drops_the_run_goes_on_to_its_end() {
     let place = Place::new();
-    let mut arguments = place.run(&["evolution.selection=random"]);
+    let mut arguments = place.run(&["evolution.variation=none"]);
     arguments.extend(["--set", "evolution.generation_limit=40"].map(String::from));
     let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
     let mut pty = Pty::start(120, 40, program(&arguments));
@@ -83,15 +83,19 @@ fn nobody_spins_when_the_terminal_has_gone() {
         pty.hang_up();
         wait_for_end(&mut pty, 129);
     }
-    // A run that goes on headless uses the processor for evolution alone: paused it is idle.
+}
+
+#[test]
+fn a_run_without_a_dashboard_survives_the_line_too() {
     let place = Place::new();
-    let mut pty = place.start(&["--headless"]);
-    pty.hang_up();
+    let arguments = [place.run(ENDLESS), vec![String::from("--headless")]].concat();
+    let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
+    let mut pty = Pty::start(120, 40, program(&arguments));
     place.wait_for_evolution();
-    pty.signal("STOP");
-    pty.signal("CONT");
+    pty.signal("HUP");
+    pty.signal("HUP");
     place.wait_for_evolution();
-    assert!(processor_seconds(pty.id()).is_some());
     pty.signal("TERM");
     wait_for_end(&mut pty, 143);
+    place.assert_saved();
 }

@@ -4,6 +4,7 @@
 //! run costs the same at any speed of evolution. Keys act when they are pressed. A frame
 //! is drawn when something has changed and the terminal has taken the last one.
 
+mod loader;
 mod save;
 mod source;
 
@@ -19,8 +20,10 @@ pub use source::{Live, Source};
 
 use super::keys::Key;
 use super::terminal::{Job, Terminal};
-use super::{App, Effect, Input, Setting};
+use super::{App, Effect, Input};
+use crate::lab::specimen::{Archive, bench};
 use crate::lab::{Life, Manifest, News};
+use loader::{Loaded, Loader};
 
 /// Time between two looks whether the program is in the foreground again.
 const BACKGROUND: Duration = Duration::from_millis(250);
@@ -45,12 +48,13 @@ pub enum Exit {
 /// A dashboard on a terminal.
 pub struct Session<'s> {
     app: App,
+    loader: Loader,
     terminal: Terminal,
     source: Source<'s>,
     /// Time between two frames.
     period: Duration,
-    /// Where exports are written.
-    exports: &'s Path,
+    /// The run folder.
+    folder: &'s Path,
     ticked: Instant,
     /// Whether something may have changed that was not drawn.
     due: bool,
@@ -62,28 +66,34 @@ enum Woken {
     Job(Job),
     Drawn(io::Result<()>),
     Signal(i32),
+    Loaded(Loaded),
     Time,
 }
 
 impl<'s> Session<'s> {
-    /// A session of so many frames a second.
-    #[must_use]
+    /// A session of so many frames a second over the run in a folder, with the run's
+    /// populations.
+    ///
+    /// # Errors
+    /// When there can be no thread.
     pub fn new(
         app: App,
-        terminal: Terminal,
+        archive: Archive,
         source: Source<'s>,
+        folder: &'s Path,
+        terminal: Terminal,
         frames_per_second: f64,
-        exports: &'s Path,
-    ) -> Self {
-        Self {
+    ) -> io::Result<Self> {
+        Ok(Self {
             app,
+            loader: Loader::start(archive)?,
             terminal,
             source,
             period: Duration::from_secs_f64(1.0 / frames_per_second.clamp(0.1, 60.0)),
-            exports,
+            folder,
             ticked: Instant::now(),
             due: true,
-        }
+        })
     }
 
     /// Shows the run until somebody or something ends it. The terminal is given back then,
@@ -173,18 +183,25 @@ impl<'s> Session<'s> {
     /// is taken in again.
     fn turn_to(&mut self, manifest: Manifest) {
         let desk = self.app.desk();
-        if (&manifest.scenario, manifest.seed) == (&desk.setting.scenario, desk.setting.seed) {
+        if (&manifest.scenario, manifest.seed) == (desk.bench.scenario(), desk.bench.seed()) {
             return;
         }
         let (look, keys) = (desk.look.clone(), desk.keys.clone());
-        let (mode, folder) = (desk.mode, desk.setting.folder.clone());
-        match Setting::new(manifest.scenario, manifest.seed, folder) {
-            Ok(setting) => {
-                self.app = App::new(setting, mode, look, keys);
+        let (mode, folder) = (desk.mode, desk.folder.clone());
+        let turned = bench(manifest.scenario, manifest.seed)
+            .map_err(|error| error.to_string())
+            .and_then(|bench| {
+                let archive = Archive::new(bench, self.folder, None);
+                self.loader = Loader::start(archive).map_err(|error| error.to_string())?;
+                Ok(App::new(bench, folder, mode, look, keys))
+            });
+        match turned {
+            Ok(app) => {
+                self.app = app;
                 self.resize();
                 self.say("another run took the place of the one before");
             }
-            Err(error) => self.say(&error.to_string()),
+            Err(error) => self.say(&error),
         }
     }
 
@@ -209,6 +226,7 @@ impl<'s> Session<'s> {
             recv(self.terminal.jobs) -> job => job.map_or(Woken::Time, Woken::Job),
             recv(self.terminal.drawn) -> drawn => drawn.map_or(Woken::Time, Woken::Drawn),
             recv(signals) -> signal => signal.map_or(Woken::Time, Woken::Signal),
+            recv(self.loader.loaded) -> loaded => loaded.map_or(Woken::Time, Woken::Loaded),
             recv(time) -> _ => Woken::Time,
         }
     }
@@ -219,6 +237,10 @@ impl<'s> Session<'s> {
             Woken::Drawn(Err(_)) | Woken::Signal(SIGHUP) => Some(Exit::HungUp),
             Woken::Signal(signal) => Some(Exit::Signal(signal)),
             Woken::Typed(typed) => self.typed(typed),
+            Woken::Loaded(Loaded { generation, state }) => {
+                let effects = self.app.update(Input::Population { generation, state });
+                self.carry_out(effects)
+            }
             Woken::Job(Job::Resize) => {
                 self.resize();
                 None
@@ -247,11 +269,11 @@ impl<'s> Session<'s> {
         None
     }
 
-    fn resize(&mut self) {
+    fn resize(&mut self) -> Option<Exit> {
         let size = self.terminal.resize();
         self.due = true;
-        // A size has no effect outside of the dashboard.
-        let _ = self.app.update(Input::Resize(size.width, size.height));
+        let effects = self.app.update(Input::Resize(size.width, size.height));
+        self.carry_out(effects)
     }
 
     fn carry_out(&mut self, effects: Vec<Effect>) -> Option<Exit> {
@@ -269,7 +291,8 @@ impl<'s> Session<'s> {
                         return Some(Exit::HungUp);
                     }
                 }
-                Effect::Export(export) => match save::save(self.exports, &export) {
+                Effect::Load { generation } => self.loader.load(generation),
+                Effect::Export(export) => match save::save(Path::new("."), &export) {
                     Ok(path) => self.say(&format!("written: {}", path.display())),
                     Err(error) => self.say(&format!("{}: {error}", export.name)),
                 },
@@ -281,8 +304,8 @@ impl<'s> Session<'s> {
 
     fn say(&mut self, text: &str) {
         self.due = true;
-        // What is said has no effect outside of the dashboard.
-        let _ = self.app.update(Input::Message(text.to_owned()));
+        // What is said leads to nothing but its being read.
+        let _none = self.app.update(Input::Message(text.to_owned()));
     }
 }
 

@@ -73,6 +73,12 @@ impl<'s> Source<'s> {
 }
 
 impl Live<'_> {
+    /// Commands to it.
+    #[must_use]
+    pub fn controls(&self) -> &Controls {
+        self.controls
+    }
+
     fn news(&mut self) -> Vec<News> {
         let mut news = Vec::new();
         while news.len() < MOST && !self.closed {

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::tty::Tty;
+use super::tty::{Tty, detach};
 
 /// Alternate screen, no cursor; pasted text is marked, so that it is not taken for keys.
 const ENTER: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m";
@@ -80,20 +80,21 @@ impl Screen {
     }
 
     /// Gives the screen back. A terminal that is gone or stuck is no obstacle: what it
-    /// does not take within a moment is given up.
-    pub(super) fn leave(&self) {
+    /// does not take within a moment is given up. Returns whether it took everything.
+    pub(super) fn leave(&self) -> bool {
         if !self.entered.swap(false, Ordering::SeqCst) {
-            return;
+            return true;
         }
         // The frame that is being written is not wanted any more; its writer gives up within
         // a slice of time. If it is this thread, which panicked, it never does.
         let _writing = self.writing_within(PATIENCE);
-        let _lost = self.tty.write_within(LEAVE, PATIENCE);
+        let taken = self.tty.write_within(LEAVE, PATIENCE);
         if self.mouse {
             // What the mouse has said meanwhile is not for the shell.
             let _gone = self.tty.forget_input();
         }
         let _gone = self.tty.restore();
+        taken.unwrap_or(false)
     }
 
     /// The screen is somebody else's already: the shell has it, and its modes.
@@ -101,10 +102,13 @@ impl Screen {
         self.entered.store(false, Ordering::SeqCst);
     }
 
-    /// Gives the screen back, and there will be no other frame.
+    /// Gives the screen back, and there will be no other frame. A terminal that does not take
+    /// this will not take what is printed afterwards either, and must not hold it up.
     pub(super) fn close(&self) {
         self.closed.store(true, Ordering::SeqCst);
-        self.leave();
+        if !self.leave() {
+            let _detached = detach();
+        }
     }
 
     pub(super) fn is_closed(&self) -> bool {
