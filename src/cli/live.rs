@@ -47,7 +47,14 @@ pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &Ho
     // There is a line that can drop. Without one SIGHUP asks the program to end.
     let survives = how.on_hangup == OnHangup::Detach && terminal::is_attached();
     let exit = match outfit {
-        Some(outfit) => Some(show(&run, outfit, &signals)?),
+        Some(outfit) => match show(&run, outfit, &signals) {
+            Ok(exit) => Some(exit),
+            Err(failure) => {
+                run.controls.stop();
+                run.join()?;
+                return Err(failure);
+            }
+        },
         None => None,
     };
     let went_headless = match exit {

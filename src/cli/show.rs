@@ -1,31 +1,26 @@
 //! The dashboard as the command line asks for it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use signal_hook::consts::SIGHUP;
 
+use super::appearance::Appearance;
 use super::output::{Done, Failure};
 use super::signals::Caught;
 use crate::dashboard::keys::KeyMap;
-use crate::dashboard::look::{Look, Signs};
+use crate::dashboard::look::Look;
 use crate::dashboard::session::{Exit, Session, Source};
 use crate::dashboard::terminal::{Terminal, is_terminal};
-use crate::dashboard::{App, Config, Mode};
-use crate::hierarchy::Glyphs;
+use crate::dashboard::{App, Mode};
 use crate::lab::specimen::{Archive, Bench};
 
 /// How the dashboard looks.
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Dashboard")]
 pub(super) struct Show {
-    /// Draw with ASCII alone, as it is done anyway where the locale is not UTF-8.
-    #[arg(long)]
-    ascii: bool,
-
-    /// Colours: dark, light, high-contrast, or mono, the default where NO_COLOR is set.
-    #[arg(long, value_name = "NAME")]
-    theme: Option<String>,
+    #[command(flatten)]
+    appearance: Appearance,
 
     /// Frames a second at most; 2 is enough to follow a run over a slow line.
     ///
@@ -36,11 +31,6 @@ pub(super) struct Show {
     /// Let the mouse scroll; the terminal then selects text with Shift alone.
     #[arg(long)]
     mouse: bool,
-
-    /// Keys and styles of your own, in TOML [default: maxq-lab/config.toml in the
-    /// configuration folder, if it is there].
-    #[arg(long, value_name = "FILE")]
-    config: Option<PathBuf>,
 }
 
 fn frames(text: &str) -> Result<f64, String> {
@@ -71,47 +61,13 @@ impl Show {
     /// The person's keys and looks. What is wrong with them is told before anything is
     /// computed.
     pub(super) fn outfit(&self) -> Result<Outfit, Failure> {
-        let config = self.config()?;
-        let glyphs = match self.ascii {
-            true => Glyphs::Ascii,
-            false => Glyphs::of_locale(),
-        };
+        let (look, keys) = self.appearance.load()?;
         Ok(Outfit {
-            look: Look::new(config.themes, &config.theme, Signs::of(glyphs)),
-            keys: config.keys,
+            look,
+            keys,
             fps: self.fps,
             mouse: self.mouse,
         })
-    }
-
-    fn config(&self) -> Result<Config, Failure> {
-        let path = match &self.config {
-            Some(path) => Some(path.clone()),
-            None => Config::default_path().filter(|path| path.exists()),
-        };
-        let mut config = match path {
-            Some(path) => Config::load(&path)?,
-            None => Config::default(),
-        };
-        let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        match &self.theme {
-            Some(theme) => {
-                let known = |name: &String| name == theme;
-                let names: Vec<_> = config
-                    .themes
-                    .iter()
-                    .map(|theme| theme.name.clone())
-                    .collect();
-                if !names.iter().any(known) {
-                    let allowed = names.join(", ");
-                    return Err(format!("--theme: found {theme:?}; allowed: {allowed}").into());
-                }
-                config.theme.clone_from(theme);
-            }
-            None if no_color => config.theme = String::from("mono"),
-            None => {}
-        }
-        Ok(config)
     }
 }
 
