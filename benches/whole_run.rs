@@ -1,7 +1,7 @@
 //! Whole runs: what threads bring, what recording costs, what memory a run takes.
 //!
 //! Machines are shared and noisy, so the variants take turns and are compared within
-//! each turn; the figures are medians over the turns. An argument names the scenario:
+//! each turn. An argument names the scenario:
 //! `cargo bench --bench whole_run -- environment-2`.
 
 use std::path::Path;
@@ -28,35 +28,53 @@ fn main() -> Result<(), Error> {
     let mut turns = Vec::new();
     let mut control_steps = 0;
     for _ in 0..TURNS {
-        let (unrecorded, steps) = unrecorded(&scenario)?;
-        control_steps = steps;
         turns.push([
-            unrecorded,
-            recorded(&scenario, 1, Keep::All)?,
-            recorded(&scenario, 2, Keep::All)?,
+            measured(|| {
+                control_steps = unrecorded(&scenario)?;
+                Ok(())
+            })?,
+            measured(|| recorded(&scenario, 1, Keep::All))?,
+            measured(|| recorded(&scenario, 2, Keep::All))?,
         ]);
     }
-    let median = |of: &dyn Fn(&[f64; 3]) -> f64| {
+    let median = |of: &dyn Fn(&[Cost; 3]) -> f64| {
         let mut values: Vec<_> = turns.iter().map(of).collect();
         values.sort_by(f64::total_cmp);
         values[values.len() / 2]
     };
+    // Processors count in hundredths of a second: sums, not medians.
+    let processor = |variant: usize| turns.iter().map(|t| t[variant].processor).sum::<f64>();
+    let wall = |variant: usize| turns.iter().map(|t| t[variant].wall).sum::<f64>();
     let steps = control_steps as f64;
-    println!("{name}, seed {SEED}: {control_steps} control steps, medians of {TURNS} turns");
-    println!("one thread, not recorded   {:6.3} s", median(&|t| t[0]));
-    println!("one thread, recorded       {:6.3} s", median(&|t| t[1]));
-    println!("two threads, recorded      {:6.3} s", median(&|t| t[2]));
     println!(
-        "control steps a second     {:6.2} million on one thread",
-        median(&|t| steps / t[1] / 1e6)
+        "{name}, seed {SEED}: {control_steps} control steps, {TURNS} turns; wall times are medians"
     );
     println!(
-        "recording costs            {:6.2} %",
-        median(&|t| 100.0 * (t[1] / t[0] - 1.0))
+        "one thread, not recorded   {:6.3} s",
+        median(&|t| t[0].wall)
     );
     println!(
-        "two threads against one    {:6.2} times",
-        median(&|t| t[1] / t[2])
+        "one thread, recorded       {:6.3} s",
+        median(&|t| t[1].wall)
+    );
+    println!(
+        "two threads, recorded      {:6.3} s",
+        median(&|t| t[2].wall)
+    );
+    println!(
+        "control steps a second     {:6.2} million on one thread; {:.2} million a second of processor time",
+        median(&|t| steps / t[1].wall / 1e6),
+        steps * TURNS as f64 / processor(1) / 1e6
+    );
+    println!(
+        "recording costs            {:6.2} % of processor time, {:.2} % of wall time",
+        100.0 * (processor(1) / processor(0) - 1.0),
+        median(&|t| 100.0 * (t[1].wall / t[0].wall - 1.0))
+    );
+    println!(
+        "two threads against one    {:6.2} times; they computed {:.1} % of the time",
+        median(&|t| t[1].wall / t[2].wall),
+        100.0 * processor(2) / (2.0 * wall(2))
     );
     println!(
         "peak memory                {:6.1} MiB on two threads",
@@ -65,23 +83,48 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-fn recorded(scenario: &Scenario, threads: usize, keep: Keep) -> Result<f64, Error> {
+/// What something took, in seconds.
+struct Cost {
+    wall: f64,
+    /// Of all threads together.
+    processor: f64,
+}
+
+fn measured(work: impl FnOnce() -> Result<(), Error>) -> Result<Cost, Error> {
+    let (started, before) = (Instant::now(), processor_time()?);
+    work()?;
+    Ok(Cost {
+        wall: started.elapsed().as_secs_f64(),
+        processor: processor_time()? - before,
+    })
+}
+
+/// What this process has computed so far, by Linux's account of it.
+fn processor_time() -> Result<f64, Error> {
+    let text = std::fs::read_to_string("/proc/self/stat")?;
+    // The fields after the name, which stands in brackets: state is the first of them.
+    let fields = text.rsplit(')').next().unwrap_or_default();
+    let fields: Vec<_> = fields.split_whitespace().collect();
+    let ticks = |index: usize| -> Result<f64, Error> {
+        Ok(fields.get(index).ok_or("no such field")?.parse::<f64>()?)
+    };
+    Ok((ticks(11)? + ticks(12)?) / 100.0)
+}
+
+fn recorded(scenario: &Scenario, threads: usize, keep: Keep) -> Result<(), Error> {
     let folder = tempfile::tempdir()?;
     let options = RunOptions {
         threads,
         keep,
         force: false,
     };
-    let started = Instant::now();
     start(scenario.clone(), SEED, &folder.path().join("run"), &options)?.join()?;
-    Ok(started.elapsed().as_secs_f64())
+    Ok(())
 }
 
 /// The same computation without events, recorder or files.
-fn unrecorded(scenario: &Scenario) -> Result<(f64, u64), Error> {
-    let started = Instant::now();
-    let control_steps = with_world(scenario.clone(), Unrecorded)??;
-    Ok((started.elapsed().as_secs_f64(), control_steps))
+fn unrecorded(scenario: &Scenario) -> Result<u64, Error> {
+    with_world(scenario.clone(), Unrecorded)?
 }
 
 struct Unrecorded;

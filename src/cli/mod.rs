@@ -49,7 +49,7 @@ struct Cli {
 const AFTER_HELP: &str = "\
 Begin with:
   maxq-lab scenarios                        what there is to run
-  maxq-lab run smoke                        the whole method in about a second
+  maxq-lab run smoke                        the whole method, in less than a second
   maxq-lab run environment-1                an experiment of the thesis
   maxq-lab evaluate environment-1 --tree '(Root Wander ApproachBattery ApproachNest)'";
 

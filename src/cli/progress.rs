@@ -42,7 +42,7 @@ pub(super) fn bar(length: u64, shown: bool) -> ProgressBar {
         false => ProgressDrawTarget::hidden(),
     };
     let bar = ProgressBar::with_draw_target(Some(length), target);
-    let template = "{bar:20} {elapsed} (at most {eta} left)  {wide_msg}";
+    let template = "{bar:10} {elapsed}, at most {eta} left  {wide_msg}";
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
@@ -54,7 +54,7 @@ fn describe(record: &GenerationRecord) -> String {
     let middle = record.individuals.len() / 2;
     let mean = |rank| record.mean_trial_steps(rank).unwrap_or(f64::NAN);
     format!(
-        "generation {}: best {:.0}, rank {middle} {:.0} steps a trial",
+        "generation {}: best {:.0}, rank {middle} {:.0} steps",
         record.generation,
         mean(1),
         mean(middle)

@@ -157,19 +157,14 @@ impl<'g, W: World> Living<'g, W> {
 impl<W: World> Task for Living<'_, W> {
     type Error = Stopped;
 
-    /// Control steps, if the trials to come are as long as those that were.
+    /// Control steps, if the trials to come are as long as those that were and one at the
+    /// limit: a first trial that happens to be short must not put off a long life.
     fn left(&self) -> Option<f64> {
+        let evolution = &self.generation.experiment.scenario.evolution;
         let to_come = self.generation.starts.all.len() - self.next;
-        let step_limit = self
-            .generation
-            .experiment
-            .scenario
-            .evolution
-            .trial_step_limit;
-        let mean = match self.next - self.first {
-            0 => f64::from(step_limit),
-            over => self.control_steps as f64 / over as f64,
-        };
+        let over = self.next - self.first;
+        let steps = self.control_steps as f64 + f64::from(evolution.trial_step_limit);
+        let mean = steps / (over + 1) as f64;
         (to_come > 0).then_some(to_come as f64 * mean)
     }
 

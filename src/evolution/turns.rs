@@ -86,8 +86,11 @@ impl<T: Task> Desk<T> {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::super::parallel::Workers;
     use super::*;
+    use crate::random::{Purpose, stream};
 
     /// Counts down; fails at a number.
     #[derive(Debug, PartialEq)]
@@ -155,5 +158,70 @@ mod tests {
         longest.task.left = 4;
         let next = desk.exchange(longest, Ok(())).unwrap();
         assert_eq!(next.task.left, 5);
+    }
+
+    /// A life of trials whose lengths nobody knows before.
+    struct Trials {
+        lengths: Vec<f64>,
+        over: usize,
+    }
+
+    impl Task for Trials {
+        type Error = ();
+
+        fn left(&self) -> Option<f64> {
+            let done: f64 = self.lengths[..self.over].iter().sum();
+            let mean = (done + 2000.0) / (self.over + 1) as f64;
+            let to_come = self.lengths.len() - self.over;
+            (to_come > 0).then_some(to_come as f64 * mean)
+        }
+
+        fn turn(&mut self) -> Result<(), ()> {
+            self.over += 1;
+            Ok(())
+        }
+    }
+
+    /// Threads on a clock of their own: what this machine does otherwise plays no part.
+    #[test]
+    fn two_threads_come_to_the_end_together() {
+        let mut rng = stream(1, 0, 0, Purpose::Life);
+        let (mut work, mut wall) = (0.0, 0.0);
+        for _ in 0..30 {
+            // Lives that differ threefold, of trials that differ as chance will have it.
+            let lives: Vec<_> = (0..16)
+                .map(|life| {
+                    let mean = 100.0 * 3_f64.powf(rng.random());
+                    let trials = if life < 2 { 8 } else { 16 };
+                    let lengths = (0..trials).map(|_| -mean * f64::ln(1.0 - rng.random::<f64>()));
+                    Trials {
+                        lengths: lengths.collect(),
+                        over: 0,
+                    }
+                })
+                .collect();
+            work += lives.iter().flat_map(|life| &life.lengths).sum::<f64>();
+            let mut desk = Desk::new(lives);
+            let mut threads = [0.0, 0.0].map(|clock| (clock, desk.take()));
+            while threads.iter().any(|(_, held)| held.is_some()) {
+                let busy = threads.iter_mut().filter(|(_, held)| held.is_some());
+                // The thread whose turn is over first comes to the desk first.
+                let turn = |held: &Option<Numbered<Trials>>| {
+                    let task = &held.as_ref().unwrap().task;
+                    task.lengths[task.over]
+                };
+                let (clock, held) = busy
+                    .min_by(|(a, held_a), (b, held_b)| {
+                        (a + turn(held_a)).total_cmp(&(b + turn(held_b)))
+                    })
+                    .unwrap();
+                *clock += turn(held);
+                let mut back = held.take().unwrap();
+                back.task.turn().unwrap();
+                *held = desk.exchange(back, Ok(()));
+            }
+            wall += f64::max(threads[0].0, threads[1].0);
+        }
+        assert!(work / wall > 1.97, "{}", work / wall);
     }
 }

@@ -111,20 +111,20 @@ impl CompositeValues {
         let mut next = |layout: &Layout| -> Vec<f32> {
             let (vector, others) = rest.split_at(layout.vector());
             rest = others;
-            let blocks = vector.chunks_exact(layout.stride());
-            blocks
-                .flat_map(|block| &block[..layout.width])
-                .copied()
-                .collect()
+            let mut unpadded = Vec::with_capacity(layout.blocks * layout.width);
+            for block in vector.chunks_exact(layout.stride()) {
+                unpadded.extend_from_slice(&block[..layout.width]);
+            }
+            unpadded
         };
         let layouts = self.layouts.iter();
         layouts.map(|layout| [next(layout), next(layout)]).collect()
     }
 
     fn is_finite(&self) -> bool {
-        self.parameters
-            .iter()
-            .all(|parameter| parameter.is_finite())
+        // Without a way out in the middle, so that it runs on vectors.
+        let parameters = self.parameters.iter();
+        parameters.fold(true, |finite, parameter| finite & parameter.is_finite())
     }
 
     /// Number of children.
