@@ -9,6 +9,7 @@ mod check;
 mod evaluate;
 mod export;
 mod frame;
+mod learn;
 mod live;
 mod manual;
 mod output;
@@ -61,6 +62,7 @@ enum Command {
     Replay(replay::Args),
     Frame(frame::Args),
     Evaluate(evaluate::Args),
+    Learn(learn::Args),
     Study(Box<study::Args>),
     Export(export::Args),
     #[command(subcommand)]
@@ -87,6 +89,7 @@ pub fn main() -> ExitCode {
         Command::Replay(args) => replay::main(&args),
         Command::Frame(args) => frame::main(&args),
         Command::Evaluate(args) => evaluate::main(args),
+        Command::Learn(args) => learn::main(args),
         Command::Study(args) => study::main(&args),
         Command::Export(args) => export::main(&args),
         Command::Tree(command) => tree::main(command),

@@ -56,6 +56,8 @@ pub struct Trial<S> {
     pub steps: u32,
     /// Whether the task is done.
     pub done: bool,
+    /// The sum of the primitive subtasks' rewards.
+    pub reward: f64,
 }
 
 impl<'r, W: World> Agent<'r, W> {
@@ -150,6 +152,7 @@ impl<'r, W: World> Agent<'r, W> {
             state,
             steps: 0,
             done: false,
+            reward: 0.0,
         }
     }
 
@@ -181,6 +184,7 @@ impl<'r, W: World> Agent<'r, W> {
         let subtask = self.mind.plan.nodes[node].subtask;
         let reward = self.world.step(&mut trial.state, subtask, action, rng);
         trial.steps += 1;
+        trial.reward += f64::from(reward);
         observer.acted(node, action, reward, &trial.state);
         std::mem::swap(&mut self.now, &mut self.before);
         self.perceive(&trial.state);

@@ -287,7 +287,7 @@ impl Past<'_> {
                 node,
                 child,
                 pseudo_reward: pseudo_reward(
-                    self.model.pseudo_reward,
+                    self.model,
                     goal.contains(reached),
                     terminated.is_some(),
                 ),

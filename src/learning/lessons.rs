@@ -4,7 +4,7 @@ use super::agent::{Agent, Frame};
 use super::linear::Replay;
 use super::observe::{Observer, Update};
 use super::situation::{Completion, Mind};
-use crate::scenario::{CompletionBootstrap, CoolOn, PseudoReward};
+use crate::scenario::{CompletionBootstrap, CoolOn, LearningModel, PseudoReward};
 use crate::worlds::{StateType, World};
 
 impl<W: World> Agent<'_, W> {
@@ -39,7 +39,7 @@ impl<W: World> Agent<'_, W> {
         } = frame;
         let mind = &mut self.mind;
         let pseudo_reward = pseudo_reward(
-            self.model.pseudo_reward,
+            self.model,
             mind.plan.nodes[node].goal.contains(self.now.state_type),
             terminal,
         );
@@ -121,11 +121,15 @@ impl<W: World> Agent<'_, W> {
     }
 }
 
-/// The pseudo-reward of a transition (Thesis Definition 2.1): 0 into a goal state, -1
-/// into another terminal state; under `all`, -1 into every state that is no goal.
-pub(super) fn pseudo_reward(rule: PseudoReward, at_goal: bool, terminal: bool) -> f32 {
-    let punished = !at_goal && (terminal || rule == PseudoReward::All);
-    if punished { -1.0 } else { 0.0 }
+/// The pseudo-reward of a transition (Thesis Definition 2.1): 0 into a goal state, minus
+/// the penalty into another terminal state; under `all`, into every state that is no goal.
+pub(super) fn pseudo_reward(model: &LearningModel, at_goal: bool, terminal: bool) -> f32 {
+    let punished = !at_goal && (terminal || model.pseudo_reward == PseudoReward::All);
+    if punished {
+        -model.pseudo_penalty as f32
+    } else {
+        0.0
+    }
 }
 
 /// What is to be learned in successive states of one type.

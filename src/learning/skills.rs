@@ -2,6 +2,7 @@
 
 use super::features::Encoder;
 use super::linear::{ROW, Row, STRIDE, values};
+use crate::scenario::LearningModel;
 use crate::worlds::{Catalogue, MapId, SubtaskId};
 
 /// The action values Q_prim of one primitive subtask (Thesis Eq. 3.1, 3.9).
@@ -137,6 +138,18 @@ impl Skills {
             .map(|skill| skill.subtask)
             .eq(catalogue.primitives());
         complete.then_some(Self { skills })
+    }
+
+    /// Skills that have learned nothing.
+    #[must_use]
+    pub fn untrained(catalogue: &Catalogue, model: &LearningModel) -> Self {
+        let initial = model.initial_parameter as f32;
+        let primitives = catalogue.primitives();
+        Self {
+            skills: primitives
+                .map(|subtask| Skill::new(subtask, catalogue, initial))
+                .collect(),
+        }
     }
 
     /// All skills in the order of the catalogue's primitive subtasks.

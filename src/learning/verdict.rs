@@ -1,5 +1,6 @@
 //! What a hierarchy would do in a state, whatever led there.
 
+use super::agent::Agent;
 use super::explain::Choice;
 use super::features::Encoder;
 use super::hierarchy::Hierarchy;
@@ -8,7 +9,7 @@ use super::selection::{Rule, Softmax};
 use super::situation::{Completion, Mind, Situation};
 use super::skills::Skills;
 use crate::scenario::{CompositeChoice, LearningModel};
-use crate::worlds::{Catalogue, StateType};
+use crate::worlds::{Catalogue, StateType, SubtaskId, World};
 
 /// The policy of a hierarchy, to be asked about any state.
 #[derive(Clone, Debug)]
@@ -19,6 +20,21 @@ pub struct Policy<'r> {
     model: &'r LearningModel,
     /// What the walk down the hierarchy has found so far.
     totals: Vec<f64>,
+}
+
+impl<'r, W: World> Agent<'r, W> {
+    /// The agent's policy as it is now.
+    #[must_use]
+    pub fn policy(&self) -> Policy<'r> {
+        let mind = self.mind.clone();
+        Policy {
+            now: Situation::new(&mind, self.world.catalogue().terminal()),
+            totals: vec![0.0; mind.skills.all().len()],
+            softmax: self.softmax,
+            model: self.model,
+            mind,
+        }
+    }
 }
 
 impl<'r> Policy<'r> {
@@ -45,6 +61,24 @@ impl<'r> Policy<'r> {
             model,
             mind,
         }
+    }
+
+    /// The action that the hierarchy would choose without exploring, by the largest
+    /// C~ + V from the root down and the largest Q_prim at its end: the primitive subtask
+    /// and the index of the action; `None` where the root cannot act.
+    pub fn greedy(&mut self) -> Option<(SubtaskId, usize)> {
+        let mut node = 0;
+        while self.mind.plan.nodes[node].skill.is_none() {
+            if !self.mind.plan.can_act(node, self.now.state_type) {
+                return None;
+            }
+            (node, _) = self.mind.best_child(&mut self.now, node);
+        }
+        let skill = self.mind.plan.nodes[node].skill?;
+        let values = self.mind.action_values(&mut self.now, skill);
+        let first = values.iter().copied().reduce(f32::max)?;
+        let action = values.iter().position(|&value| value == first)?;
+        Some((self.mind.plan.nodes[node].subtask, action))
     }
 
     /// Looks at another state from now on.

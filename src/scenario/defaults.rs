@@ -23,6 +23,8 @@ pub const PROBABILITY_LIMIT: f64 = 0.98;
 pub const EPSILON: f64 = 0.02;
 /// Initial value of every parameter (theta init), Thesis Table 4.5.
 pub const INITIAL_PARAMETER: f64 = 0.123;
+/// Minus the pseudo-reward of a transition into a terminal state that is no goal, Thesis 4.2.
+pub const PSEUDO_PENALTY: f64 = 1.0;
 /// Length of a time step in seconds, Thesis Table 4.5.
 pub const TIME_STEP_S: f64 = 0.1;
 

@@ -30,8 +30,11 @@ pub struct LearningModel {
     pub completion_bootstrap: CompletionBootstrap,
     /// When a composite subtask's temperature falls.
     pub cool_on: CoolOn,
-    /// Which transitions carry a pseudo-reward of -1.
+    /// Which transitions carry a negative pseudo-reward.
     pub pseudo_reward: PseudoReward,
+    /// The pseudo-reward is minus this. A subtask prefers failing to a way to its goal that
+    /// costs more.
+    pub pseudo_penalty: f64,
     /// How a composite subtask chooses among its children.
     pub composite_choice: CompositeChoice,
     /// Whether primitive subtasks learn during evolution.
@@ -52,6 +55,7 @@ impl Default for LearningModel {
             completion_bootstrap: CompletionBootstrap::default(),
             cool_on: CoolOn::default(),
             pseudo_reward: PseudoReward::default(),
+            pseudo_penalty: d::PSEUDO_PENALTY,
             composite_choice: CompositeChoice::default(),
             primitive_learning: PrimitiveLearning::default(),
         }
@@ -80,7 +84,7 @@ pub enum CoolOn {
     Goal,
 }
 
-/// Which transitions carry a pseudo-reward of -1; transitions into a goal state carry 0.
+/// Which transitions carry a negative pseudo-reward; transitions into a goal state carry 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PseudoReward {

@@ -338,6 +338,7 @@ fn learning(check: &mut Check, learning: &LearningModel, trained: bool) {
     );
     check.range("probability_limit", learning.probability_limit, 0.0..=1.0);
     check.range("epsilon", learning.epsilon, 0.0..=1.0);
+    check.range("pseudo_penalty", learning.pseudo_penalty, 0.0..=1000.0);
     check.range(
         "initial_parameter",
         learning.initial_parameter,

@@ -5,9 +5,9 @@
 
 use super::{MapId, StateType, SubtaskId};
 
-/// Sweeps over all states after which values count as infinite: a policy that never
-/// comes to an end has none.
-const MAX_SWEEPS: usize = 5_000;
+/// Sweeps over all states after which values are taken as they are: those of a policy that
+/// need not come to an end never settle.
+pub const MAX_SWEEPS: usize = 20_000;
 /// Values are exact when no sweep changes one by more than this.
 const EXACT: f64 = 1e-12;
 
@@ -55,18 +55,18 @@ impl<P> FiniteModel<P> {
     /// The optimal values (Thesis Eq. 2.10), by value iteration.
     #[must_use]
     pub fn optimal_values(&self, discount: f64) -> Vec<f64> {
-        self.iterate(|_, state, values| {
+        self.iterate(MAX_SWEEPS, |_, state, values| {
             let all = state.outcomes.iter();
             all.map(|outcomes| expected(outcomes, values, discount))
                 .fold(f64::NEG_INFINITY, f64::max)
         })
     }
 
-    /// The values of a policy (Thesis Eq. 2.8). Where it need not come to an end, they
-    /// are those of a few thousand steps.
+    /// The values of a policy (Thesis Eq. 2.8), by at most `sweeps` sweeps over all states:
+    /// those of at least as many steps.
     #[must_use]
-    pub fn policy_values(&self, policy: &PolicyTable, discount: f64) -> Vec<f64> {
-        self.iterate(|index, state, values| {
+    pub fn policy_values(&self, policy: &PolicyTable, discount: f64, sweeps: usize) -> Vec<f64> {
+        self.iterate(sweeps, |index, state, values| {
             let all = state.outcomes.iter().zip(&policy[index]);
             all.filter(|&(_, &probability)| probability > 0.0)
                 .map(|(outcomes, probability)| probability * expected(outcomes, values, discount))
@@ -115,9 +115,13 @@ impl<P> FiniteModel<P> {
         states.filter_map(|(index, state)| Some((index, state.as_ref()?)))
     }
 
-    fn iterate(&self, backup: impl Fn(usize, &FiniteState<P>, &[f64]) -> f64) -> Vec<f64> {
+    fn iterate(
+        &self,
+        sweeps: usize,
+        backup: impl Fn(usize, &FiniteState<P>, &[f64]) -> f64,
+    ) -> Vec<f64> {
         let mut values = vec![0.0; self.states.len()];
-        for _ in 0..MAX_SWEEPS {
+        for _ in 0..sweeps {
             let mut change: f64 = 0.0;
             for (index, state) in self.existing() {
                 if !state.outcomes.is_empty() {

@@ -108,6 +108,11 @@ pub trait World: Send + Sync {
         false
     }
 
+    /// A hierarchy that a person would make, as text.
+    fn hand_made(&self) -> Option<&'static str> {
+        None
+    }
+
     /// The whole world, exactly; `None` where it has too many states for that.
     fn finite(&self) -> Option<FiniteModel<Self::Percept>> {
         None

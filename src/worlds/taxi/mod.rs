@@ -284,6 +284,14 @@ impl World for TaxiWorld {
         })
     }
 
+    /// Thesis Figures 2.7 and 3.1.
+    fn hand_made(&self) -> Option<&'static str> {
+        Some(
+            "(Root (Get (NavigateToPassenger North South East West) Pickup) \
+             (Put (NavigateToDestination North South East West) Putdown))",
+        )
+    }
+
     fn finite(&self) -> Option<FiniteModel<Percept>> {
         Some(self.exact())
     }

@@ -1,0 +1,280 @@
+//! `maxq-lab learn`: one learner in a finite world, held against the exact values.
+
+use std::fmt::Write;
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use serde::Serialize;
+
+use super::answer::answer;
+use super::output::{Done, Failure, Format};
+use super::progress::bar;
+use super::source::Source;
+use crate::evolution::{Experiment, Workers, read_tree};
+use crate::lab::{
+    Algorithm, Course, GivenPolicy, LearnProtocol, Learned, Mean, ValueGrid, WorldTask, learn,
+    value_grids,
+};
+use crate::learning::Gate;
+use crate::worlds::scene::Scenic;
+
+/// Let one learner learn a finite world, and compare it with the exact values.
+///
+/// Learners are TD(0), Q-learning, Q-learning with RBF features (thesis Algorithms 2.1 to
+/// 2.3) and MAXQ-Q on a hierarchy. Exact values come from dynamic programming on the
+/// world's model, which no learner sees. A policy counts as optimal when its exact expected
+/// return, from a random start and without exploration, is within the tolerance of the best.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab learn cliff --algorithm q-learning
+  maxq-lab learn cliff --algorithm td0 --policy random --steps 1000000 --set learning.learning_rate=0.01
+  maxq-lab learn taxi-fickle --algorithm maxq-q --repeats 30")]
+pub(super) struct Args {
+    #[command(flatten)]
+    source: Source,
+
+    /// How to learn.
+    #[arg(long, value_enum)]
+    algorithm: Name,
+
+    /// The hierarchy for maxq-q, as text; by default the world's hand-made one.
+    #[arg(long, value_name = "T")]
+    tree: Option<String>,
+
+    /// The policy whose values td0 learns.
+    #[arg(long, value_enum, default_value_t)]
+    policy: PolicyName,
+
+    /// Primitive steps of each repeat.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    steps: u64,
+
+    /// Primitive steps between two checks; they end with a trial.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    check_every: u64,
+
+    /// A policy is optimal if its expected return is no further below the best than this.
+    #[arg(long, value_name = "RETURN", default_value_t = 0.1)]
+    tolerance: f64,
+
+    /// Learners that begin from nothing.
+    #[arg(long, value_name = "R", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    repeats: u64,
+
+    /// Seed of all random streams.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+
+    /// Computing threads; 0 means one for each processor.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
+
+    /// What is the case in the states whose values are printed, such as 'from R to B';
+    /// by default the first there is.
+    #[arg(long, value_name = "CASE")]
+    show: Option<String>,
+
+    /// How to report.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Name {
+    /// TD(0) on a table.
+    Td0,
+    /// Q-learning on a table.
+    QLearning,
+    /// Q-learning with normalised Gaussian features.
+    QLearningRbf,
+    /// MAXQ-Q on a hierarchy.
+    MaxqQ,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum PolicyName {
+    /// The optimal policy.
+    #[default]
+    Optimal,
+    /// All actions alike.
+    Random,
+}
+
+#[derive(Serialize)]
+struct Report {
+    scenario: String,
+    algorithm: String,
+    seed: u64,
+    steps: u64,
+    tolerance: f64,
+    #[serde(flatten)]
+    learned: Learned,
+    /// Values of the first repeat at its end, and the exact ones.
+    values: Vec<ValueGrid>,
+    #[serde(skip)]
+    shown: usize,
+}
+
+/// Carries out the command.
+pub(super) fn main(args: Args) -> Done {
+    let (scenario, format) = (args.source.load()?, args.format);
+    if !(0.0..=1000.0).contains(&args.tolerance) {
+        let found = args.tolerance;
+        return Err(format!("--tolerance: found {found}; allowed: 0 to 1000").into());
+    }
+    answer(scenario, format, |gate| Task { args, gate }, describe)
+}
+
+struct Task {
+    args: Args,
+    gate: Arc<Gate>,
+}
+
+impl WorldTask for Task {
+    type Output = Result<Report, Failure>;
+
+    fn carry_out<W: Scenic + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        let args = &self.args;
+        let algorithm = algorithm(args, &experiment)?;
+        let protocol = LearnProtocol {
+            steps: args.steps,
+            every: args.check_every,
+            tolerance: args.tolerance,
+            repeats: usize::try_from(args.repeats).unwrap_or(usize::MAX),
+            seed: args.seed,
+        };
+        let shown = shown(args.show.as_deref(), &experiment.world.variants())?;
+        let workers = Workers::new(usize::from(args.threads))?;
+        let bar = bar(args.repeats, true);
+        bar.set_message("repeats");
+        let show = |done| bar.set_position(done as u64);
+        let name = &experiment.scenario.name;
+        let learned = learn(
+            &experiment,
+            &algorithm,
+            &protocol,
+            &workers,
+            &self.gate,
+            show,
+        )
+        .map_err(|error| format!("{name}: {error}"))?;
+        bar.finish_and_clear();
+        Ok(Report {
+            scenario: name.clone(),
+            algorithm: args
+                .algorithm
+                .to_possible_value()
+                .map_or_else(String::new, |value| value.get_name().to_owned()),
+            seed: args.seed,
+            steps: args.steps,
+            tolerance: args.tolerance,
+            values: value_grids(&experiment.world, &learned),
+            learned,
+            shown,
+        })
+    }
+}
+
+fn algorithm<W: Scenic>(args: &Args, experiment: &Experiment<W>) -> Result<Algorithm, Failure> {
+    Ok(match args.algorithm {
+        Name::Td0 => Algorithm::Td0(match args.policy {
+            PolicyName::Optimal => GivenPolicy::Optimal,
+            PolicyName::Random => GivenPolicy::Random,
+        }),
+        Name::QLearning => Algorithm::QLearning,
+        Name::QLearningRbf => Algorithm::QLearningRbf,
+        Name::MaxqQ => {
+            let depth = experiment.scenario.evolution.maximum_depth;
+            let read = |text| read_tree(text, experiment.catalogue(), depth);
+            let text = args.tree.as_deref().or(experiment.world.hand_made());
+            let text = text.ok_or("--tree: found none; allowed: a hierarchy")?;
+            Algorithm::MaxqQ(read(text).map_err(|error| format!("--tree: {error}"))?)
+        }
+    })
+}
+
+fn shown(wanted: Option<&str>, variants: &[String]) -> Result<usize, Failure> {
+    let Some(wanted) = wanted else { return Ok(0) };
+    let place = variants.iter().position(|variant| variant == wanted);
+    let allowed = || format!("--show: found {wanted:?}; allowed: {}", variants.join(", "));
+    Ok(place.ok_or_else(allowed)?)
+}
+
+fn describe(report: &Report) -> String {
+    let learned = &report.learned;
+    let repeats = learned.repeats.len();
+    let trials: u64 = learned.repeats.iter().map(|course| course.trials).sum();
+    let mut text = format!(
+        "{}, {}, seed {}: {repeats} repeats of {} primitive steps, {trials} trials\n",
+        report.scenario, report.algorithm, report.seed, report.steps
+    );
+    // Writing to a string cannot fail.
+    let _ = write!(
+        text,
+        "expected return of the optimal policy   {:.4}\n\
+         of the greedy policy at the end         {}\n\
+         primitive steps until it is optimal     {}\n\
+         until it is and stays so                {}\n",
+        learned.optimal_return,
+        interval(learned.final_greedy_return, 4, "(the policy is given)"),
+        reached(learned, learned.steps_until_optimal, |course| course
+            .steps_until_optimal),
+        reached(learned, learned.steps_until_always_optimal, |course| {
+            course.steps_until_always_optimal
+        }),
+    );
+    let last = learned
+        .repeats
+        .first()
+        .and_then(|course| course.checks.last());
+    if let Some(check) = last {
+        let _ = writeln!(
+            text,
+            "largest error of a value, repeat 1      {:.4}",
+            check.largest_error
+        );
+    }
+    if let Some(grid) = report.values.get(report.shown) {
+        let _ = write!(text, "\nV {}, learned by repeat 1:\n", grid.case);
+        text.push_str(&table(&grid.learned));
+        let _ = write!(text, "\nexact:\n");
+        text.push_str(&table(&grid.exact));
+    }
+    text
+}
+
+fn interval(mean: Option<Mean>, digits: usize, none: &str) -> String {
+    let Some(mean) = mean else {
+        return none.to_owned();
+    };
+    match mean.half_width {
+        Some(half) => format!("{:.digits$} +- {half:.digits$} (95 %)", mean.mean),
+        None => format!("{:.digits$}", mean.mean),
+    }
+}
+
+fn reached(learned: &Learned, mean: Option<Mean>, of: fn(&Course) -> Option<u64>) -> String {
+    let count = learned
+        .repeats
+        .iter()
+        .filter(|course| of(course).is_some())
+        .count();
+    interval(
+        mean,
+        0,
+        &format!("in {count} of {} repeats only", learned.repeats.len()),
+    )
+}
+
+fn table(rows: &[Vec<Option<f64>>]) -> String {
+    let cell = |value: &Option<f64>| value.map_or_else(String::new, |value| format!("{value:.2}"));
+    let line = |row: &Vec<Option<f64>>| {
+        let cells: String = row
+            .iter()
+            .map(|value| format!("{:>8}", cell(value)))
+            .collect();
+        format!("{}\n", cells.trim_end())
+    };
+    rows.iter().map(line).collect()
+}

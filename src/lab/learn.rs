@@ -1,0 +1,297 @@
+//! How one learner learns a finite world, held against the exact values.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use serde::Serialize;
+use thiserror::Error;
+
+use super::learner::{AnyLearner, Learner};
+use super::mean::{Mean, mean};
+use crate::evolution::{Experiment, Workers};
+use crate::hierarchy::Tree;
+use crate::learning::{Gate, Stopped};
+use crate::random::{Purpose, stream};
+use crate::worlds::World;
+use crate::worlds::finite::{FiniteModel, MAX_SWEEPS, PolicyTable};
+
+/// Sweeps for the value of a greedy policy: one that has not come to an end after as many
+/// steps is far from optimal, and how far does not matter.
+const CHECK_SWEEPS: usize = 300;
+
+/// A learning algorithm.
+#[derive(Clone, Debug)]
+pub enum Algorithm {
+    /// TD(0) on a table (Thesis Algorithm 2.1).
+    Td0(GivenPolicy),
+    /// Q-learning on a table (Thesis Algorithm 2.2).
+    QLearning,
+    /// Q-learning with normalised Gaussian features (Thesis Algorithm 2.3).
+    QLearningRbf,
+    /// MAXQ-Q on a hierarchy (Thesis Algorithm 2.4).
+    MaxqQ(Tree),
+}
+
+/// The policy whose values TD(0) learns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GivenPolicy {
+    /// The optimal policy; of equally good actions all alike.
+    Optimal,
+    /// All actions alike.
+    Random,
+}
+
+/// How learning is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearnProtocol {
+    /// Primitive steps after which a repeat ends, with the end of its trial.
+    pub steps: u64,
+    /// Primitive steps between two checks.
+    pub every: u64,
+    /// The greedy policy counts as optimal when its expected return is no further than
+    /// this below the optimum.
+    pub tolerance: f64,
+    /// Learners that begin from nothing.
+    pub repeats: usize,
+    /// Seed of all random streams.
+    pub seed: u64,
+}
+
+/// What a check found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LearnCheck {
+    /// Primitive steps so far.
+    pub steps: u64,
+    /// Mean return of the trials that ended since the last check, exploration included;
+    /// `null` if none did.
+    pub return_while_learning: Option<f64>,
+    /// Exact expected return of the greedy policy from a random start; `null` for TD(0),
+    /// whose policy is given.
+    pub greedy_return: Option<f64>,
+    /// Largest difference of a learned value to the exact one.
+    pub largest_error: f64,
+}
+
+/// One learner's course.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Course {
+    /// Primitive steps until the first check that found the greedy policy optimal.
+    pub steps_until_optimal: Option<u64>,
+    /// Primitive steps until the first check from which on it always was; `null` if it
+    /// was not at the last.
+    pub steps_until_always_optimal: Option<u64>,
+    /// Trials.
+    pub trials: u64,
+    /// All checks.
+    pub checks: Vec<LearnCheck>,
+    /// The learned value of every state at the end, in the order of the exact ones.
+    #[serde(skip)]
+    pub values: Vec<Option<f64>>,
+}
+
+/// How learners of one kind learned.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Learned {
+    /// Expected return of the optimal policy from a random start, exactly.
+    pub optimal_return: f64,
+    /// Mean of [`Course::steps_until_optimal`], where all repeats got there.
+    pub steps_until_optimal: Option<Mean>,
+    /// Mean of [`Course::steps_until_always_optimal`], where all repeats got there.
+    pub steps_until_always_optimal: Option<Mean>,
+    /// Mean of the last checks' greedy returns.
+    pub final_greedy_return: Option<Mean>,
+    /// The exact values: optimal ones, for TD(0) those of its policy.
+    #[serde(skip)]
+    pub exact: Vec<Option<f64>>,
+    /// Every repeat.
+    pub repeats: Vec<Course>,
+}
+
+/// Why nothing is learned.
+#[derive(Debug, Error)]
+pub enum LearnError {
+    /// The world is not finite.
+    #[error(
+        "found a world whose states cannot be counted; allowed: a finite world, such as taxi or \
+         cliff"
+    )]
+    NotFinite,
+    /// The world has no Gaussian features.
+    #[error(
+        "found a world without RBF features; allowed: q-learning on its table, or RBF features \
+         in cliff"
+    )]
+    NoGaussians,
+    /// The gate was stopped.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+/// Lets learners learn; `progress` is told how many repeats are done.
+///
+/// # Errors
+/// When the world is not finite, or has no features for the algorithm, or the gate is
+/// stopped.
+pub fn learn<W: World>(
+    experiment: &Experiment<W>,
+    algorithm: &Algorithm,
+    protocol: &LearnProtocol,
+    workers: &Workers,
+    gate: &Gate,
+    progress: impl Fn(usize) + Sync,
+) -> Result<Learned, LearnError> {
+    let finite = experiment.world.finite().ok_or(LearnError::NotFinite)?;
+    if matches!(algorithm, Algorithm::QLearningRbf) && finite.gaussian.is_none() {
+        return Err(LearnError::NoGaussians);
+    }
+    let exam = Exam::new(
+        &finite,
+        algorithm,
+        protocol,
+        experiment.scenario.learning.discount,
+    );
+    let done = AtomicUsize::new(0);
+    let repeats = workers.map(
+        (0..protocol.repeats).collect(),
+        |repeat| -> Result<_, Stopped> {
+            let learner = AnyLearner::new(experiment, &finite, algorithm, exam.policy.as_ref());
+            let course = exam.course(experiment, learner, repeat as u64, gate)?;
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+            Ok(course)
+        },
+    )?;
+    let all = |of: fn(&Course) -> Option<f64>| -> Option<Mean> {
+        let numbers: Option<Vec<_>> = repeats.iter().map(of).collect();
+        numbers.as_deref().and_then(mean)
+    };
+    let existing = finite.states.iter().zip(&exam.exact);
+    Ok(Learned {
+        optimal_return: exam.optimal_return,
+        steps_until_optimal: all(|course| course.steps_until_optimal.map(|steps| steps as f64)),
+        steps_until_always_optimal: all(|course| {
+            course.steps_until_always_optimal.map(|steps| steps as f64)
+        }),
+        final_greedy_return: all(|course| course.checks.last()?.greedy_return),
+        exact: existing
+            .map(|(state, &value)| state.as_ref().map(|_| value))
+            .collect(),
+        repeats,
+    })
+}
+
+/// What learners are held against.
+struct Exam<'f, P> {
+    finite: &'f FiniteModel<P>,
+    protocol: &'f LearnProtocol,
+    discount: f64,
+    /// The policy that TD(0) is given.
+    policy: Option<PolicyTable>,
+    /// What the learned values should be.
+    exact: Vec<f64>,
+    optimal_return: f64,
+}
+
+impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
+    fn new(
+        finite: &'f FiniteModel<P>,
+        algorithm: &Algorithm,
+        protocol: &'f LearnProtocol,
+        discount: f64,
+    ) -> Self {
+        let optimal = finite.optimal_values(discount);
+        let policy = match algorithm {
+            Algorithm::Td0(GivenPolicy::Optimal) => Some(finite.best_policy(&optimal, discount)),
+            Algorithm::Td0(GivenPolicy::Random) => Some(finite.random_policy()),
+            _ => None,
+        };
+        let exact = policy
+            .as_ref()
+            .map(|policy| finite.policy_values(policy, discount, MAX_SWEEPS));
+        Self {
+            optimal_return: finite.value_at_start(&optimal),
+            exact: exact.unwrap_or(optimal),
+            finite,
+            protocol,
+            discount,
+            policy,
+        }
+    }
+
+    fn course<W: World<Percept = P>>(
+        &self,
+        experiment: &Experiment<W>,
+        mut learner: AnyLearner<'_, W>,
+        repeat: u64,
+        gate: &Gate,
+    ) -> Result<Course, Stopped> {
+        let limit = experiment.scenario.evolution.trial_step_limit;
+        let mut rng = stream(self.protocol.seed, 0, repeat, Purpose::Evaluation);
+        let mut course = Course {
+            steps_until_optimal: None,
+            steps_until_always_optimal: None,
+            trials: 0,
+            checks: Vec::new(),
+            values: Vec::new(),
+        };
+        let (mut steps, mut recent) = (0, Vec::new());
+        while steps < self.protocol.steps {
+            let start = experiment.world.draw_start(&mut rng);
+            let episode = learner.run_episode(&start, limit, &mut rng, gate)?;
+            let checks = steps / self.protocol.every;
+            steps += u64::from(episode.steps);
+            course.trials += 1;
+            recent.push(episode.reward);
+            if steps / self.protocol.every > checks || steps >= self.protocol.steps {
+                learner.refresh();
+                course.checks.push(self.check(steps, &recent, &mut learner));
+                recent.clear();
+            }
+        }
+        let optimal = |check: &&LearnCheck| {
+            let lowest = self.optimal_return - self.protocol.tolerance;
+            check.greedy_return.is_some_and(|greedy| greedy >= lowest)
+        };
+        course.steps_until_optimal = course.checks.iter().find(optimal).map(|check| check.steps);
+        let last = course.checks.iter().rev().take_while(optimal).last();
+        course.steps_until_always_optimal = last.map(|check| check.steps);
+        course.values = self.values(&mut learner);
+        Ok(course)
+    }
+
+    fn check<L: Learner<P>>(&self, steps: u64, recent: &[f64], learner: &mut L) -> LearnCheck {
+        let greedy = self.policy.is_none().then(|| {
+            let policy = self.finite.states.iter().map(|state| {
+                let mut shares = vec![0.0; self.finite.actions.len()];
+                if let Some(action) = state.as_ref().and_then(|s| learner.greedy(s)) {
+                    shares[action] = 1.0;
+                }
+                shares
+            });
+            let values = self
+                .finite
+                .policy_values(&policy.collect(), self.discount, CHECK_SWEEPS);
+            self.finite.value_at_start(&values)
+        });
+        let errors = self.values(learner).into_iter().zip(&self.exact);
+        let errors = errors.filter_map(|(value, exact)| Some((value? - exact).abs()));
+        LearnCheck {
+            steps,
+            return_while_learning: mean(recent).map(|mean| mean.mean),
+            greedy_return: greedy,
+            largest_error: errors.fold(0.0, f64::max),
+        }
+    }
+
+    /// The learned value of every state; 0 in terminal ones.
+    fn values<L: Learner<P>>(&self, learner: &mut L) -> Vec<Option<f64>> {
+        let states = self.finite.states.iter();
+        states
+            .map(|state| {
+                let state = state.as_ref()?;
+                Some(match state.outcomes.is_empty() {
+                    true => 0.0,
+                    false => learner.value(state),
+                })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,133 @@
+//! Flat learners and hierarchies as one kind of thing: they learn from episodes, and have
+//! a value and a best action for every state.
+
+use super::learn::Algorithm;
+use crate::evolution::Experiment;
+use crate::learning::{Agent, Episode, Flat, FlatLesson, Gate, Policy, Skills, Stopped};
+use crate::random::Stream;
+use crate::worlds::World;
+use crate::worlds::finite::{FiniteModel, FiniteState, PolicyTable};
+
+/// Knows a value and a best action for states.
+pub(super) trait Learner<P> {
+    /// The value of a state that is not terminal.
+    fn value(&mut self, state: &FiniteState<P>) -> f64;
+
+    /// The best action in a state, by its place in [`FiniteModel::actions`]; `None` where
+    /// it can do nothing.
+    fn greedy(&mut self, state: &FiniteState<P>) -> Option<usize>;
+}
+
+/// A learner of any kind.
+pub(super) enum AnyLearner<'e, W: World> {
+    Flat(Box<Flat<'e, W>>),
+    Hierarchy(Box<Pupil<'e, W>>),
+}
+
+/// An agent, and its policy as it was after the last episode.
+pub(super) struct Pupil<'e, W: World> {
+    agent: Agent<'e, W>,
+    finite: &'e FiniteModel<W::Percept>,
+    policy: Policy<'e>,
+}
+
+impl<'e, W: World> AnyLearner<'e, W> {
+    /// A learner that knows nothing; `policy` is what TD(0) evaluates.
+    pub(super) fn new(
+        experiment: &'e Experiment<W>,
+        finite: &'e FiniteModel<W::Percept>,
+        algorithm: &Algorithm,
+        policy: Option<&PolicyTable>,
+    ) -> Self {
+        if let Algorithm::MaxqQ(tree) = algorithm {
+            let learning = &experiment.scenario.learning;
+            let skills = Skills::untrained(experiment.catalogue(), learning);
+            let agent = experiment.agent(experiment.newborn(tree.clone()), skills);
+            return Self::Hierarchy(Box::new(Pupil {
+                policy: agent.policy(),
+                agent,
+                finite,
+            }));
+        }
+        let map = match algorithm {
+            Algorithm::QLearningRbf => finite.gaussian.unwrap_or(finite.table),
+            _ => finite.table,
+        };
+        let lesson = policy.map_or(FlatLesson::ActionValues, |policy| {
+            FlatLesson::PolicyValues(policy.clone())
+        });
+        let Experiment {
+            world,
+            encoder,
+            scenario,
+            ..
+        } = experiment;
+        let learning = &scenario.learning;
+        Self::Flat(Box::new(Flat::new(
+            world, encoder, learning, finite, map, lesson,
+        )))
+    }
+
+    pub(super) fn run_episode(
+        &mut self,
+        start: &W::Start,
+        step_limit: u32,
+        rng: &mut Stream,
+        gate: &Gate,
+    ) -> Result<Episode, Stopped> {
+        match self {
+            Self::Flat(flat) => flat.run_episode(start, step_limit, rng, gate),
+            Self::Hierarchy(pupil) => {
+                let trial = pupil.agent.run_trial(start, step_limit, rng, gate)?;
+                Ok(Episode {
+                    steps: trial.steps,
+                    done: trial.done,
+                    reward: trial.reward,
+                })
+            }
+        }
+    }
+
+    /// Takes note of what has been learned since.
+    pub(super) fn refresh(&mut self) {
+        if let Self::Hierarchy(pupil) = self {
+            pupil.policy = pupil.agent.policy();
+        }
+    }
+}
+
+impl<W: World> Learner<W::Percept> for AnyLearner<'_, W> {
+    fn value(&mut self, state: &FiniteState<W::Percept>) -> f64 {
+        let value = match self {
+            Self::Flat(flat) => {
+                let values = flat.values(&state.percept);
+                values.into_iter().fold(f32::NEG_INFINITY, f32::max)
+            }
+            Self::Hierarchy(pupil) => {
+                let percept = state.percept.as_ref();
+                pupil.policy.look(state.state_type, percept);
+                pupil.policy.value()
+            }
+        };
+        f64::from(value)
+    }
+
+    fn greedy(&mut self, state: &FiniteState<W::Percept>) -> Option<usize> {
+        match self {
+            Self::Flat(flat) => {
+                let values = flat.values(&state.percept);
+                let better = |best: usize, (action, value): (usize, &f32)| match *value {
+                    value if value > values[best] => action,
+                    _ => best,
+                };
+                Some(values.iter().enumerate().fold(0, better))
+            }
+            Self::Hierarchy(pupil) => {
+                let percept = state.percept.as_ref();
+                pupil.policy.look(state.state_type, percept);
+                let greedy = pupil.policy.greedy()?;
+                pupil.finite.actions.iter().position(|&own| own == greedy)
+            }
+        }
+    }
+}

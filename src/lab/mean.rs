@@ -1,0 +1,55 @@
+//! Means with intervals.
+
+use serde::Serialize;
+
+/// A mean with its 95 % confidence interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Mean {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of the interval, by Student's t; `null` for a single number.
+    pub half_width: Option<f64>,
+}
+
+/// The mean of some numbers; `None` of none.
+#[must_use]
+pub fn mean(numbers: &[f64]) -> Option<Mean> {
+    let n = numbers.len() as f64;
+    if numbers.is_empty() {
+        return None;
+    }
+    let mean = numbers.iter().sum::<f64>() / n;
+    let squares: f64 = numbers.iter().map(|x| (x - mean) * (x - mean)).sum();
+    let half_width =
+        (numbers.len() > 1).then(|| student_t(n - 1.0) * libm::sqrt(squares / (n - 1.0) / n));
+    Some(Mean { mean, half_width })
+}
+
+/// The 97.5 % quantile of Student's t distribution, by the expansion of Cornish and Fisher
+/// in 1 over the degrees of freedom (Abramowitz and Stegun 26.7.5): right to 0.02 from
+/// four degrees on, too narrow below.
+fn student_t(degrees: f64) -> f64 {
+    let z: f64 = 1.959_963_985;
+    let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
+    z + (z3 + z) / (4.0 * degrees)
+        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * degrees.powi(2))
+        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * degrees.powi(3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_are_those_of_the_tables() {
+        for (degrees, quantile) in [(4.0, 2.776), (9.0, 2.262), (29.0, 2.045), (99.0, 1.984)] {
+            assert!((student_t(degrees) - quantile).abs() < 0.02, "{degrees}");
+        }
+        let five = mean(&[1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
+        assert_eq!(five.mean, 3.0);
+        // The standard error is the square root of 2.5 / 5.
+        assert!((five.half_width.unwrap() - 2.776 * 0.5_f64.sqrt()).abs() < 0.02);
+        assert_eq!(mean(&[7.0]).unwrap().half_width, None);
+        assert_eq!(mean(&[]), None);
+    }
+}

@@ -1,0 +1,77 @@
+//! Contract: the textbook worlds come out as the textbook says.
+//!
+//! Taxi and cliff walk are where everybody checks an implementation, because there the
+//! truth is known: it is printed in the thesis and can be computed by dynamic programming.
+//! The programs that learn never see the exact model; if the two agree in every state, then
+//! world, algorithm and table are right together, and the same code runs foraging.
+//!
+//! Learned values are single precision sums; in the deterministic worlds they settle on
+//! the exact ones but for rounding.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+#[path = "textbook/cliff.rs"]
+mod cliff;
+#[path = "textbook/fickle.rs"]
+mod fickle;
+#[path = "textbook/taxi.rs"]
+mod taxi;
+#[path = "textbook/worlds.rs"]
+mod worlds;
+
+use maxq_lab::evolution::{Experiment, Workers, read_tree};
+use maxq_lab::hierarchy::Tree;
+use maxq_lab::lab::{Algorithm, LearnProtocol, Learned, learn};
+use maxq_lab::learning::Gate;
+use maxq_lab::scenario::{Scenario, WorldModel};
+use maxq_lab::worlds::World;
+use maxq_lab::worlds::cliff::CliffWorld;
+use maxq_lab::worlds::taxi::TaxiWorld;
+
+fn scenario(name: &str, settings: &[&str]) -> Scenario {
+    let settings: Vec<_> = settings.iter().map(|&setting| setting.into()).collect();
+    let scenario = Scenario::load(name).unwrap();
+    scenario.with_settings(&settings).unwrap()
+}
+
+fn taxi(name: &str, settings: &[&str]) -> Experiment<TaxiWorld> {
+    let scenario = scenario(name, settings);
+    let WorldModel::Taxi(model) = &scenario.world else {
+        panic!("a taxi scenario")
+    };
+    let world = TaxiWorld::new(model).unwrap();
+    Experiment::new(scenario, world).unwrap()
+}
+
+fn cliff(settings: &[&str]) -> Experiment<CliffWorld> {
+    let scenario = scenario("cliff", settings);
+    let WorldModel::Cliff(model) = &scenario.world else {
+        panic!("a cliff scenario")
+    };
+    let world = CliffWorld::new(model).unwrap();
+    Experiment::new(scenario, world).unwrap()
+}
+
+fn hand_made<W: World>(experiment: &Experiment<W>) -> Tree {
+    let text = experiment.world.hand_made().unwrap();
+    let depth = experiment.scenario.evolution.maximum_depth;
+    read_tree(text, experiment.catalogue(), depth).unwrap()
+}
+
+fn learned<W: World>(
+    experiment: &Experiment<W>,
+    algorithm: &Algorithm,
+    steps: u64,
+    repeats: usize,
+) -> Learned {
+    let protocol = LearnProtocol {
+        steps,
+        every: 5000,
+        tolerance: 1e-6,
+        repeats,
+        seed: 1,
+    };
+    let workers = Workers::new(1).unwrap();
+    let gate = Gate::default();
+    learn(experiment, algorithm, &protocol, &workers, &gate, |_| {}).unwrap()
+}
