@@ -205,15 +205,18 @@ pub(super) fn skills(
 }
 
 fn allowed_widths(subtask: SubtaskId, children: &[SubtaskId], catalogue: &Catalogue) -> String {
-    let widths = children.iter().map(|&child| {
-        let width = catalogue.completion_width(subtask, child);
-        format!("{width} for {}", child.name(catalogue))
-    });
-    let widths: Vec<_> = widths.collect();
-    format!(
-        "allowed: numbers in c_tilde and in c: {}",
-        widths.join(", ")
-    )
+    let width = |&child: &SubtaskId| catalogue.completion_width(subtask, child);
+    let mut widths: Vec<_> = children.iter().map(width).map(|w| w.to_string()).collect();
+    if widths.iter().all(|width| *width == widths[0]) {
+        widths.truncate(1);
+    }
+    match &widths[..] {
+        [same] => format!("allowed: {same} numbers in c_tilde and in c"),
+        each => format!(
+            "allowed: {} numbers in c_tilde and in c of the children",
+            each.join(", ")
+        ),
+    }
 }
 
 impl CompositeFile {
