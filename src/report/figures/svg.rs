@@ -9,6 +9,8 @@ use super::{Chart, Figure, Panel, Sketch};
 const WIDTH: u32 = 960;
 /// Height of a chart in pixels.
 const CHART_HEIGHT: u32 = 330;
+/// Width of the legend of a chart in pixels.
+const LEGEND_WIDTH: u32 = 138;
 /// Height of a level of a hierarchy in pixels.
 const LEVEL_HEIGHT: u32 = 54;
 /// Height of the title and of the provenance in pixels.
@@ -90,9 +92,13 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         );
     };
     let margin = 0.04 * (top - bottom);
-    let mut context = ChartBuilder::on(area)
+    // The legend stands beside the lines, not over them.
+    let (width, _) = area.dim_in_pixel();
+    let (lines, legend) = area.split_horizontally(width.saturating_sub(LEGEND_WIDTH));
+    let mut context = ChartBuilder::on(&lines)
         .caption(&chart.title, (FONT, 14))
         .margin(8)
+        .margin_right(14)
         .x_label_area_size(36)
         .y_label_area_size(54)
         .build_cartesian_2d(left..right, bottom - margin..top + margin)
@@ -113,17 +119,15 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         let style = COLOURS[index % COLOURS.len()].stroke_width(2);
         context
             .draw_series(LineSeries::new(series.points.iter().copied(), style))
-            .map_err(words)?
-            .label(&series.name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], style));
+            .map_err(words)?;
+        let y = 44 + 16 * index as i32;
+        let sample = [(0, y), (14, y)];
+        legend
+            .draw(&PathElement::new(sample, style))
+            .map_err(words)?;
+        put(&legend, &series.name, (18, y - 6), 11, HPos::Left)?;
     }
-    context
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.8))
-        .label_font((FONT, 11))
-        .draw()
-        .map_err(words)
+    Ok(())
 }
 
 /// Composite subtasks in boxes with a bold border, primitive ones without.

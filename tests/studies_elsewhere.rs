@@ -1,0 +1,394 @@
+//! A study that other engines spread over processes and machines is the study that one
+//! process does, byte for byte: GNU parallel on the lines of `study plan`, Slurm on the
+//! script of `study slurm`, and parts put together by `study merge`, in any order; a task
+//! that is preempted goes on where it was.
+//!
+//! Why it matters: hundreds of runs are done where there are many processors, and what comes
+//! back must not depend on which of them did what. The real programs are used, because
+//! their quoting, signals and requeueing are what breaks. `.ci/run` installs them; where
+//! they are missing these tests say so and pass.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use common::{SHORT, output, program, stderr, stdout};
+
+/// A plan of six short runs, and of two that take a second or so if `long`.
+fn plan_in(folder: &Path, long: bool) -> PathBuf {
+    let short: Vec<_> = SHORT.iter().map(|setting| format!("{setting:?}")).collect();
+    let settings = if long { String::new() } else { short.join(",") };
+    let arm =
+        |base: &str| format!(r#"{{"name":"{base}","base":"{base}","settings":[{settings}]}}"#);
+    let arms = match long {
+        true => arm("random_selection"),
+        false => [arm("evolved"), arm("random_search"), arm("flat")].join(","),
+    };
+    let plan = format!(
+        r#"{{"format":1,"name":"parts","scenarios":["smoke"],"seeds":"1..2","arms":[{arms}],
+            "reevaluation":{{"warmup":1,"trials":1,"repeats":2,"banks":1}}}}"#
+    );
+    let file = folder.join("plan.json");
+    fs::write(&file, plan).unwrap();
+    file
+}
+
+fn study(plan: &Path, out: &Path) -> Command {
+    let mut command = program();
+    command.arg("study").arg(plan).arg("--out").arg(out);
+    command
+}
+
+fn succeeds(command: &mut Command) -> String {
+    let done = output(command);
+    assert!(
+        done.status.success(),
+        "{command:?}: {}{}",
+        stdout(&done),
+        stderr(&done)
+    );
+    stdout(&done)
+}
+
+/// Everything in a study but what says where and when: `run.json`, `summary.json`, and
+/// locks.
+fn bytes(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            if path.is_dir() {
+                folders.push(path);
+            } else if !["run.json", "summary.json", "lock"].contains(&name) {
+                let place = path.strip_prefix(folder).unwrap().to_str().unwrap();
+                files.insert(place.to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+fn assert_same(one: &Path, other: &Path) {
+    let (one, other) = (bytes(one), bytes(other));
+    let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&one), names(&other));
+    for (name, bytes) in &one {
+        common::assert_same_bytes(bytes, &other[name], name);
+    }
+}
+
+/// Says something although the test passes, when `eprintln` would be kept back.
+fn say(words: &str) {
+    writeln!(std::io::stderr(), "{words}").unwrap();
+}
+
+fn missing(programs: &[&str]) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let found =
+        |name: &&str| std::env::split_paths(&path).any(|folder| folder.join(name).is_file());
+    let missing: Vec<_> = programs.iter().filter(|name| !found(name)).collect();
+    if !missing.is_empty() {
+        say(&format!("skipped: not installed: {missing:?}"));
+    }
+    !missing.is_empty()
+}
+
+#[test]
+fn parts_are_put_together_in_any_order() {
+    let parent = tempfile::tempdir().unwrap();
+    let plan = plan_in(parent.path(), false);
+    let at = |name: &str| parent.path().join(name);
+    succeeds(&mut study(&plan, &at("whole")));
+    succeeds(study(&plan, &at("a")).args(["--only", "1..3"]));
+    succeeds(study(&plan, &at("b")).args(["--only", "3..5"]));
+    succeeds(study(&plan, &at("c")).args(["--only", "smoke/flat/seed-2", "--jobs", "1"]));
+    let merge = |parts: [&str; 3], out: &str| {
+        let parts = parts.map(at);
+        succeeds(
+            program()
+                .args(["study", "merge"])
+                .args(parts)
+                .arg("--out")
+                .arg(at(out)),
+        )
+    };
+    assert!(merge(["a", "b", "c"], "one").starts_with("6 runs of 3 parts"));
+    merge(["c", "b", "a"], "other");
+    for out in ["whole", "one", "other"] {
+        succeeds(program().args(["study", "report"]).arg(at(out)));
+    }
+    assert_same(&at("whole"), &at("one"));
+    assert_same(&at("one"), &at("other"));
+    // Who did a run is told the same, whatever the order.
+    let told = |out: &str| fs::read(at(out).join("smoke/evolved/seed-1/run.json")).unwrap();
+    assert_eq!(told("one"), told("other"));
+
+    // A part may be the whole; a run that differs is refused.
+    succeeds(
+        program()
+            .args(["study", "merge"])
+            .arg(at("a"))
+            .arg("--out")
+            .arg(at("b")),
+    );
+    let events = at("a").join("smoke/evolved/seed-1/events.jsonl");
+    fs::write(
+        &events,
+        fs::read_to_string(&events).unwrap().replacen('5', "6", 1),
+    )
+    .unwrap();
+    let refused = output(
+        program()
+            .args(["study", "merge"])
+            .arg(at("a"))
+            .arg("--out")
+            .arg(at("one")),
+    );
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(
+        stderr(&refused).contains("events.jsonl is not the same"),
+        "{}",
+        stderr(&refused)
+    );
+}
+
+#[test]
+fn gnu_parallel_does_the_lines_of_the_plan() {
+    if missing(&["parallel"]) {
+        return;
+    }
+    let parent = tempfile::tempdir().unwrap();
+    let plan = plan_in(parent.path(), false);
+    // A name that the shell would take apart.
+    let out = parent.path().join("the study's");
+    succeeds(&mut study(&plan, &parent.path().join("whole")));
+    let binary = env!("CARGO_BIN_EXE_maxq-lab");
+    let mut command = program();
+    command
+        .args(["study", "plan"])
+        .arg(&plan)
+        .arg("--out")
+        .arg(&out);
+    let lines = succeeds(command.args(["--program", binary]));
+    assert_eq!(lines.lines().count(), 6);
+    let file = parent.path().join("runs.txt");
+    fs::write(&file, &lines).unwrap();
+    let hosts = parent.path().join("hosts.txt");
+    fs::write(&hosts, "2/:\n").unwrap();
+    let log = parent.path().join("jobs.log");
+    let parallel = || {
+        let mut command = Command::new("parallel");
+        command
+            .arg("--sshloginfile")
+            .arg(&hosts)
+            .arg("--joblog")
+            .arg(&log);
+        command.arg("--resume-failed").arg("-a").arg(&file);
+        command.stdin(Stdio::null()).env("HOME", parent.path());
+        succeeds(&mut command)
+    };
+    assert_eq!(
+        parallel()
+            .lines()
+            .filter(|line| line.starts_with("1 of 1 runs done"))
+            .count(),
+        6
+    );
+    assert_eq!(parallel(), "", "nothing was left to do");
+    assert_same(&parent.path().join("whole"), &out);
+}
+
+/// A Slurm of one node on this machine, its files in a folder of its own.
+struct Slurm {
+    folder: PathBuf,
+    daemons: Vec<Child>,
+}
+
+impl Slurm {
+    fn start(folder: &Path) -> Self {
+        let mut slurm = Self {
+            folder: folder.to_owned(),
+            daemons: Vec::new(),
+        };
+        for name in ["state", "spool"] {
+            fs::create_dir(folder.join(name)).unwrap();
+        }
+        let key = folder.join("munge.key");
+        fs::write(&key, [7_u8; 128]).unwrap();
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(&key, fs::Permissions::from_mode(0o600)).unwrap();
+        fs::write(folder.join("slurm.conf"), slurm.configuration()).unwrap();
+        let file = |name: &str| folder.join(name).display().to_string();
+        slurm.daemon(
+            "munged",
+            &[
+                "--foreground",
+                "--force",
+                &format!("--key-file={}", file("munge.key")),
+                &format!("--socket={}", file("munge.socket")),
+                &format!("--pid-file={}", file("munged.pid")),
+                &format!("--log-file={}", file("munged.log")),
+                &format!("--seed-file={}", file("munged.seed")),
+            ],
+        );
+        wait("munged", || folder.join("munge.socket").exists());
+        slurm.daemon("slurmctld", &["-D"]);
+        slurm.daemon("slurmd", &["-D", "-N", "localhost"]);
+        wait("the node", || {
+            slurm.says("sinfo", &["-h", "-o", "%T"]).trim() == "idle"
+        });
+        slurm
+    }
+
+    fn configuration(&self) -> String {
+        // Two ports that nobody uses at the moment.
+        let listeners = [0, 0].map(|_| TcpListener::bind("127.0.0.1:0").unwrap());
+        let [controller, node] = listeners.map(|listener| listener.local_addr().unwrap().port());
+        let host = gethostname::gethostname().into_string().unwrap();
+        let host = host.split('.').next().unwrap();
+        let folder = self.folder.display();
+        format!(
+            "ClusterName=test\n\
+             SlurmctldHost={host}(127.0.0.1)\n\
+             SlurmctldPort={controller}\n\
+             SlurmdPort={node}\n\
+             AuthType=auth/munge\n\
+             AuthInfo=socket={folder}/munge.socket\n\
+             CredType=cred/munge\n\
+             SlurmUser=root\n\
+             ProctrackType=proctrack/linuxproc\n\
+             TaskPlugin=task/none\n\
+             SelectType=select/cons_tres\n\
+             SelectTypeParameters=CR_CPU\n\
+             MpiDefault=none\n\
+             MailProg=/bin/true\n\
+             ReturnToService=2\n\
+             StateSaveLocation={folder}/state\n\
+             SlurmdSpoolDir={folder}/spool\n\
+             SlurmctldPidFile={folder}/slurmctld.pid\n\
+             SlurmdPidFile={folder}/slurmd.pid\n\
+             SlurmctldLogFile={folder}/slurmctld.log\n\
+             SlurmdLogFile={folder}/slurmd.log\n\
+             NodeName=localhost NodeAddr=127.0.0.1 CPUs=2\n\
+             PartitionName=all Nodes=localhost Default=YES MaxTime=INFINITE State=UP\n"
+        )
+    }
+
+    fn daemon(&mut self, name: &str, arguments: &[&str]) {
+        let mut command = Command::new(name);
+        command
+            .args(arguments)
+            .env("SLURM_CONF", self.folder.join("slurm.conf"));
+        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        self.daemons.push(command.spawn().unwrap());
+    }
+
+    fn command(&self, name: &str) -> Command {
+        let mut command = Command::new(name);
+        command
+            .env("SLURM_CONF", self.folder.join("slurm.conf"))
+            .current_dir(&self.folder);
+        command.stdin(Stdio::null());
+        command
+    }
+
+    fn says(&self, name: &str, arguments: &[&str]) -> String {
+        stdout(&output(self.command(name).args(arguments)))
+    }
+}
+
+impl Drop for Slurm {
+    fn drop(&mut self) {
+        for daemon in self.daemons.iter_mut().rev() {
+            let _ = Command::new("kill").arg(daemon.id().to_string()).status();
+            let begun = Instant::now();
+            while daemon.try_wait().is_ok_and(|ended| ended.is_none()) {
+                if begun.elapsed() > Duration::from_secs(5) {
+                    let _ = daemon.kill();
+                }
+                sleep(Duration::from_millis(20));
+            }
+        }
+    }
+}
+
+fn wait(what: &str, mut holds: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !holds() {
+        assert!(
+            begun.elapsed() < Duration::from_secs(240),
+            "waiting for {what}"
+        );
+        sleep(Duration::from_millis(50));
+    }
+}
+
+#[test]
+fn slurm_does_the_array_and_goes_on_after_preemption() {
+    if missing(&["munged", "slurmctld", "slurmd", "sbatch"]) {
+        return;
+    }
+    let root = fs::metadata("/proc/self").map(|data| std::os::unix::fs::MetadataExt::uid(&data));
+    if root.unwrap_or(1) != 0 {
+        say("skipped: a Slurm can be started by root alone");
+        return;
+    }
+    let parent = tempfile::tempdir().unwrap();
+    let slurm = Slurm::start(parent.path());
+    let plan = plan_in(parent.path(), true);
+    let [whole, out] = ["whole", "out"].map(|name| parent.path().join(name));
+    let mut script = program();
+    script
+        .args(["study", "slurm"])
+        .arg(&plan)
+        .arg("--out")
+        .arg(&out);
+    let script = succeeds(script.args(["--program", env!("CARGO_BIN_EXE_maxq-lab")]));
+    let file = parent.path().join("study.sbatch");
+    fs::write(&file, script).unwrap();
+    let job = succeeds(slurm.command("sbatch").arg("--parsable").arg(&file));
+    let job = job.trim();
+    let first = out.join("smoke/random_selection/seed-1");
+    wait("the first generation", || {
+        common::lines(&first.join("events.jsonl")) >= 2
+    });
+    slurm.says(
+        "scancel",
+        &["--batch", "--signal=TERM", &format!("{job}_1")],
+    );
+    let queue = || slurm.says("squeue", &["-h", "-o", "%T %i"]);
+    wait("the end of the job", || {
+        // Slurm lets a requeued task wait for a while; the test need not.
+        for line in queue().lines().filter(|line| line.starts_with("PENDING")) {
+            let id = line.split(' ').next_back().unwrap_or_default();
+            slurm.says(
+                "scontrol",
+                &["update", &format!("JobId={id}"), "StartTime=now"],
+            );
+        }
+        queue().is_empty()
+    });
+    succeeds(&mut study(&plan, &whole));
+    assert_same(&whole, &out);
+    let manifest = fs::read_to_string(first.join("run.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    assert_eq!(
+        manifest["resumed"].as_array().unwrap().len(),
+        1,
+        "it was gone on with"
+    );
+}
