@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::Path;
+use std::process::Stdio;
 use std::thread;
 use std::time::Duration;
 
@@ -133,6 +134,41 @@ fn broken_off_anywhere_and_in_any_order_it_is_the_same() {
             .iter()
             .all(|status| status.stage == Stage::Done)
     );
+}
+
+#[test]
+fn killed_and_started_twice_at_once_it_is_the_same() {
+    let parent = tempfile::tempdir().unwrap();
+    let plan = plan(&[Base::Evolved, Base::RandomSelection]);
+    let whole = Study::create(plan.clone(), &parent.path().join("whole")).unwrap();
+    do_all(&whole);
+    let killed = Study::create(plan, &parent.path().join("killed")).unwrap();
+    let command = || {
+        let mut command = program();
+        command.arg("study").arg(killed.folder.join("study.json"));
+        command
+            .arg("--out")
+            .arg(&killed.folder)
+            .args(["--jobs", "2"]);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        command
+    };
+    for milliseconds in [30, 60, 90, 120] {
+        let mut process = command().spawn().unwrap();
+        thread::sleep(Duration::from_millis(milliseconds));
+        process.kill().unwrap();
+        process.wait().unwrap();
+    }
+    let mut both = [command().spawn().unwrap(), command().spawn().unwrap()];
+    for process in &mut both {
+        assert!(process.wait().unwrap().success());
+    }
+    assert!(
+        status(&killed)
+            .iter()
+            .all(|status| status.stage == Stage::Done)
+    );
+    assert_same(&whole.folder, &killed.folder);
 }
 
 #[test]

@@ -69,6 +69,8 @@ pub enum Happening {
         /// How long this took.
         took: Duration,
     },
+    /// Another process does the run.
+    Elsewhere(RunId),
     /// A run cannot be done.
     Failed {
         /// The run.
@@ -110,6 +112,7 @@ pub fn carry_out(
                     took: begun.elapsed(),
                 }),
                 Err(SingleError::Stopped(_)) => {}
+                Err(error) if single.is_elsewhere(&error) => tell(Happening::Elsewhere(run)),
                 Err(error) => tell(Happening::Failed { run, error }),
             }
         }

@@ -132,6 +132,22 @@ impl Single<'_> {
         self.evaluate(&folder, scenario)
     }
 
+    /// Whether the run cannot be done because another process does it: it holds the lock,
+    /// or has made the folder since it was looked for.
+    #[must_use]
+    pub fn is_elsewhere(&self, error: &SingleError) -> bool {
+        match error {
+            SingleError::Folder(error) | SingleError::Run(RunError::Folder(error)) => match error {
+                FolderError::InUse { .. } => true,
+                FolderError::Exists { .. } => {
+                    self.study.run_folder(&self.run).join("run.json").is_file()
+                }
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+
     fn evolve(&self, folder: &Path, scenario: &Scenario) -> Result<(), SingleError> {
         let options = RunOptions {
             threads: 1,
@@ -189,6 +205,10 @@ impl Single<'_> {
     fn evaluate(&self, folder: &Path, scenario: Scenario) -> Result<Fresh, SingleError> {
         let path = folder.join("evaluation.json");
         let _locked = RunFolder::open(folder)?;
+        // Another process may have done it before the lock was free.
+        if let Some(fresh) = fresh(folder)? {
+            return Ok(fresh);
+        }
         let misfit = |message| SingleError::Misfit {
             path: folder.join("summary.json").display().to_string(),
             message,

@@ -37,6 +37,11 @@ pub(super) fn main(args: &Args) -> Done {
         output::message("stopped; the same command goes on");
         return Ok(ExitCode::from(code));
     }
+    if failed == 0 && done < all {
+        output::message(
+            "the others are done by another process; 'study status' tells how far it is",
+        );
+    }
     match failed {
         0 => Ok(ExitCode::SUCCESS),
         _ => Ok(ExitCode::FAILURE),
@@ -98,6 +103,7 @@ impl<'s> Show<'s> {
         let (run, took) = match &happening {
             Happening::Begun(_) => return,
             Happening::Done { run, took, .. } => (run, Some(*took)),
+            Happening::Elsewhere(run) => (run, None),
             Happening::Failed { run, error } => {
                 state.failed += 1;
                 let message = format!("error: {}: {error}", self.study.name(run));
