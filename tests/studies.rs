@@ -298,6 +298,13 @@ fn the_command_does_a_plan_and_errors_say_what_is_allowed() {
         "{}",
         stderr(&one)
     );
+    let checked = output(program().arg("check").arg(&file).arg("thesis"));
+    assert_eq!(
+        stdout(&checked).matches(": valid").count(),
+        2,
+        "{}",
+        stderr(&checked)
+    );
     let status = output(program().args(["study", "status"]).arg(&out));
     assert!(
         stdout(&status).starts_with("mine: 4 runs, 1 done, 3 waiting"),

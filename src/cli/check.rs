@@ -1,4 +1,4 @@
-//! `maxq-lab check`: are scenario files valid?
+//! `maxq-lab check`: are scenario files and plans valid?
 
 use std::process::ExitCode;
 
@@ -7,16 +7,17 @@ use serde::Serialize;
 use super::output::{self, Done, Format};
 use crate::evolution::Experiment;
 use crate::lab::{WorldTask, with_world};
+use crate::report::Plan;
 use crate::scenario::Scenario;
 use crate::worlds::World;
 
-/// Check scenario files.
+/// Check scenario files, and plans of studies.
 ///
 /// With --format json the complete scenarios are printed, defaults written out: what
 /// 'maxq-lab run --set' can change.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// Scenario files, or names of embedded scenarios.
+    /// Scenario files, plans, or names of embedded ones.
     #[arg(required = true)]
     files: Vec<String>,
 
@@ -33,6 +34,8 @@ struct Report {
     error: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     scenario: Option<Scenario>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plan: Option<Plan>,
 }
 
 /// Carries out the command.
@@ -56,6 +59,9 @@ pub(super) fn main(args: &Args) -> Done {
 }
 
 fn report(file: &str) -> Report {
+    if Plan::is_plan(file) {
+        return report_plan(file);
+    }
     let loaded = Scenario::load(file).map_err(|error| error.to_string());
     let checked = loaded.and_then(|scenario| {
         let ready = with_world(scenario.clone(), Ready);
@@ -72,6 +78,21 @@ fn report(file: &str) -> Report {
         valid: error.is_none(),
         error,
         scenario,
+        plan: None,
+    }
+}
+
+fn report_plan(file: &str) -> Report {
+    let (plan, error) = match Plan::load(file) {
+        Ok(plan) => (Some(plan), None),
+        Err(error) => (None, Some(error.to_string())),
+    };
+    Report {
+        file: file.to_owned(),
+        valid: error.is_none(),
+        error,
+        scenario: None,
+        plan,
     }
 }
 

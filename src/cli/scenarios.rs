@@ -5,15 +5,15 @@ use std::process::ExitCode;
 use serde::Serialize;
 
 use super::output::{self, Done, Format};
-use crate::scenario::{EMBEDDED, Scenario};
+use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Scenario};
 
-/// List the embedded scenarios, or print one.
+/// List the embedded scenarios, or print one, or the plan of the embedded study, 'thesis'.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Example:
   maxq-lab scenarios environment-2 > my-scenario.json     a file to start from")]
 pub(super) struct Args {
-    /// Print the file of this scenario instead.
+    /// Print the file of this scenario, or of this plan, instead.
     name: Option<String>,
 
     /// How to report the list.
@@ -30,8 +30,15 @@ struct Row {
 /// Carries out the command.
 pub(super) fn main(args: &Args) -> Done {
     if let Some(name) = &args.name {
-        let embedded = EMBEDDED.iter().find(|embedded| embedded.name == name);
-        let names: Vec<_> = EMBEDDED.iter().map(|embedded| embedded.name).collect();
+        let embedded = EMBEDDED
+            .iter()
+            .chain(EMBEDDED_PLANS)
+            .find(|embedded| embedded.name == name);
+        let names: Vec<_> = EMBEDDED
+            .iter()
+            .chain(EMBEDDED_PLANS)
+            .map(|embedded| embedded.name)
+            .collect();
         let embedded = embedded
             .ok_or_else(|| format!("no scenario {name:?}; allowed: {}", names.join(", ")))?;
         output::text(embedded.json)?;

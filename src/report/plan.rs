@@ -205,6 +205,16 @@ impl Plan {
         .checked(file)
     }
 
+    /// The plan as a file: the bytes of `study.json`.
+    ///
+    /// # Errors
+    /// When serialisation fails.
+    pub fn to_file(&self) -> Result<Vec<u8>, serde_json::Error> {
+        let mut bytes = serde_json::to_vec_pretty(self)?;
+        bytes.push(b'\n');
+        Ok(bytes)
+    }
+
     /// This plan if it can be carried out.
     fn checked(self, file: &str) -> Result<Self, PlanError> {
         let invalid = |place: &str, message: String| {

@@ -13,7 +13,7 @@ use super::study::Study;
 pub struct Provenance {
     /// Name of the study.
     pub study: String,
-    /// CRC-32 of its plan as `study.json` holds it.
+    /// CRC-32 of its `study.json`.
     pub plan_crc32: String,
     /// Runs that are done.
     pub runs: usize,
@@ -31,7 +31,7 @@ impl Provenance {
     /// Of these runs of a study.
     #[must_use]
     pub fn of(study: &Study, all: &[Facts]) -> Self {
-        let plan = serde_json::to_vec(&study.plan).unwrap_or_default();
+        let plan = study.plan.to_file().unwrap_or_default();
         let versions: BTreeSet<_> = all.iter().map(|facts| facts.version.clone()).collect();
         Self {
             study: study.plan.name.clone(),

@@ -102,8 +102,7 @@ impl Study {
             };
         }
         fs::create_dir_all(folder).map_err(refused)?;
-        let mut text = serde_json::to_vec_pretty(&plan).map_err(|error| refused(error.into()))?;
-        text.push(b'\n');
+        let text = plan.to_file().map_err(|error| refused(error.into()))?;
         write_atomically(&file, &text).map_err(refused)?;
         Ok(Self {
             plan,
