@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::appearance::Appearance;
 use super::output::{self, Done};
 use crate::dashboard::keys::Key;
-use crate::dashboard::{App, Effect, FrameFormat, Input, Mode, ViewId, render};
+use crate::dashboard::{App, FrameFormat, Input, Mode, Still, ViewId, render};
 use crate::lab::Recording;
 use crate::lab::specimen::{Archive, bench};
 
@@ -94,20 +94,16 @@ pub(super) fn main(args: &Args) -> Done {
     let manifest = recording.manifest;
     let bench = bench(manifest.scenario, manifest.seed)?;
     let folder = args.folder.display().to_string();
-    let mut still = Still {
-        app: App::new(bench, folder, Mode::Replay, look, key_map),
-        archive: Archive::new(bench, &args.folder, None),
-    };
+    let app = App::new(bench, folder, Mode::Replay, look, key_map);
+    let mut still = Still::new(app, Archive::new(bench, &args.folder, None));
     let Size(columns, rows) = args.size;
     still.update(Input::Resize(columns, rows));
     for event in recording.events {
         still.update(Input::Event(Box::new(event)));
     }
-    let effects = still.app.open(args.view);
-    still.carry_out(effects);
+    still.open(args.view);
     if let Some(generation) = args.generation {
-        let effects = still.app.travel_to(generation);
-        still.carry_out(effects);
+        still.travel_to(generation);
     }
     for _ in 0..(args.play / TICK.as_secs_f64()).round() as u64 {
         still.update(Input::Tick(TICK));
@@ -115,31 +111,7 @@ pub(super) fn main(args: &Args) -> Done {
     for key in keys {
         still.update(Input::Key(key));
     }
-    let frame = render(&still.app.frame(), args.format);
+    let frame = render(&still.app().frame(), args.format);
     output::raw(frame.as_bytes())?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// A dashboard without a terminal.
-struct Still {
-    app: App,
-    archive: Archive,
-}
-
-impl Still {
-    fn update(&mut self, input: Input) {
-        let effects = self.app.update(input);
-        self.carry_out(effects);
-    }
-
-    /// Fetches populations; a recorded run cannot be steered, and nothing is written.
-    fn carry_out(&mut self, effects: Vec<Effect>) {
-        for effect in effects {
-            if let Effect::Load { generation } = effect {
-                let state = self.archive.generation(generation);
-                let state = state.map_err(|error| error.to_string());
-                self.update(Input::Population { generation, state });
-            }
-        }
-    }
 }

@@ -39,6 +39,7 @@ mod panel;
 pub mod session;
 mod sight;
 mod stage;
+mod still;
 pub mod terminal;
 pub mod views;
 
@@ -49,4 +50,5 @@ pub use export::{FrameFormat, render};
 pub use input::{Effect, Export, Input};
 pub use model::{Model, Progress};
 pub use stage::{SPEEDS, Stage, Subject};
+pub use still::Still;
 pub use views::ViewId;

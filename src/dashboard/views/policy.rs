@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
 use super::{View, nothing_yet};
@@ -80,16 +80,23 @@ impl View for Policy {
     }
 }
 
-/// A place for each state type.
+/// A place for each state type, as many as there is room for.
 fn places(area: Rect, types: usize) -> Vec<Rect> {
     let columns = if area.width >= TWO_COLUMNS { 2 } else { 1 };
-    let rows = types.div_ceil(columns);
-    let bands = Layout::vertical(vec![Constraint::Fill(1); rows]).split(area);
-    let places = bands.iter().flat_map(|band| {
-        let halves = Layout::horizontal(vec![Constraint::Fill(1); columns]).spacing(2);
-        halves.split(*band).to_vec()
-    });
-    places.take(types).collect()
+    let types = types.min(usize::from(area.height) * columns);
+    let rows = u16::try_from(types.div_ceil(columns)).unwrap_or(u16::MAX);
+    let place = |index: usize| {
+        let (column, row) = ((index % columns) as u16, (index / columns) as u16);
+        let width = area.width / columns as u16;
+        let height = area.height / rows;
+        Rect {
+            x: area.x + column * width,
+            y: area.y + row * height,
+            width: width.saturating_sub(column),
+            height,
+        }
+    };
+    (0..types).map(place).collect()
 }
 
 fn draw_type(

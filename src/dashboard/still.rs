@@ -1,0 +1,67 @@
+//! A dashboard without a terminal: for single frames and for tests.
+
+use super::app::App;
+use super::input::{Effect, Input};
+use super::views::ViewId;
+use crate::lab::specimen::Archive;
+
+/// A dashboard without a terminal, over a run that is on disk. It fetches what the
+/// dashboard asks for at once; what cannot be done without a terminal or a run under way
+/// it hands on.
+pub struct Still {
+    app: App,
+    archive: Archive,
+}
+
+impl Still {
+    /// A dashboard and where it fetches populations from.
+    #[must_use]
+    pub fn new(app: App, archive: Archive) -> Self {
+        Self { app, archive }
+    }
+
+    /// The dashboard.
+    #[must_use]
+    pub fn app(&self) -> &App {
+        &self.app
+    }
+
+    /// Takes in what happened; returns what was not done about it.
+    pub fn update(&mut self, input: Input) -> Vec<Effect> {
+        let effects = self.app.update(input);
+        self.carry_out(effects)
+    }
+
+    /// Opens a view.
+    pub fn open(&mut self, view: ViewId) {
+        let effects = self.app.open(view);
+        self.carry_out(effects);
+    }
+
+    /// Travels to the generation with this number, or the nearest that there is.
+    pub fn travel_to(&mut self, generation: u64) {
+        let effects = self.app.travel_to(generation);
+        self.carry_out(effects);
+    }
+
+    /// Whether the frame drawn last is not what there is to see now; see
+    /// [`App::take_dirty`].
+    pub fn take_dirty(&mut self) -> bool {
+        self.app.take_dirty()
+    }
+
+    fn carry_out(&mut self, effects: Vec<Effect>) -> Vec<Effect> {
+        let mut left = Vec::new();
+        for effect in effects {
+            match effect {
+                Effect::Load { generation } => {
+                    let state = self.archive.generation(generation);
+                    let state = state.map_err(|error| error.to_string());
+                    left.extend(self.update(Input::Population { generation, state }));
+                }
+                other => left.push(other),
+            }
+        }
+        left
+    }
+}

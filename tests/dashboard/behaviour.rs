@@ -1,0 +1,216 @@
+//! What keys do, and when there is something to draw.
+
+use maxq_lab::dashboard::keys::Action;
+use maxq_lab::dashboard::{Effect, Input, Mode, Time, ViewId};
+use maxq_lab::hierarchy::Glyphs::Unicode;
+use maxq_lab::lab::Event;
+
+use super::recorded::{Screen, foraging};
+
+fn screen() -> Screen {
+    foraging().screen("dark", Unicode, (120, 40))
+}
+
+fn live() -> Screen {
+    let mut screen = foraging().blank(Mode::Live, "dark", Unicode);
+    for event in &foraging().events[..4] {
+        screen.tell(event.clone());
+    }
+    screen.wait(0.1);
+    screen
+}
+
+fn generation(screen: &Screen) -> u64 {
+    screen.0.app().desk().shown().unwrap().generation
+}
+
+#[test]
+fn every_view_draws_at_every_size() {
+    let mut screen = screen();
+    let tiny = (0..5).flat_map(|width| (0..5).map(move |height| (width, height)));
+    let others = [
+        (3, 200),
+        (200, 2),
+        (39, 12),
+        (40, 12),
+        (41, 13),
+        (80, 24),
+        (300, 100),
+    ];
+    for (width, height) in tiny.chain(others) {
+        screen.0.update(Input::Resize(width, height));
+        for view in ViewId::all() {
+            screen.0.open(view);
+            let text = screen.text();
+            if width >= 40 && height >= 12 {
+                assert!(text.contains(view.title()), "{width}x{height}: {text}");
+            } else if width >= 9 && height >= 1 {
+                assert!(text.contains("too small"), "{width}x{height}: {text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_halted_rollout_in_a_finished_run_draws_nothing() {
+    let mut screen = screen();
+    screen.0.take_dirty();
+    screen.wait(0.2);
+    assert!(screen.0.take_dirty(), "the rollout moves");
+    screen.press("space");
+    screen.wait(0.1);
+    assert!(screen.0.take_dirty(), "it was halted");
+    for _ in 0..100 {
+        screen.wait(0.1);
+        assert!(!screen.0.take_dirty());
+    }
+}
+
+#[test]
+fn a_rollout_that_nobody_sees_does_not_go_on() {
+    let mut screen = screen();
+    screen.press("4");
+    screen.0.take_dirty();
+    screen.wait(1.0);
+    assert!(!screen.0.take_dirty());
+}
+
+#[test]
+fn time_travel_goes_through_all_generations() {
+    let mut screen = screen();
+    assert_eq!(generation(&screen), 6);
+    screen.press("[ [");
+    assert_eq!(generation(&screen), 4);
+    let subject = screen.0.app().desk().stage.subject().unwrap();
+    assert_eq!(subject.generation, 4, "the rollout is of that time");
+    assert!(screen.text().contains("PAST of 6"));
+    screen.press("{");
+    assert_eq!(generation(&screen), 1);
+    screen.press("P");
+    screen.wait(0.3);
+    assert_eq!(generation(&screen), 2);
+    screen.wait(2.0);
+    assert_eq!(
+        (generation(&screen), screen.0.app().desk().time()),
+        (6, Time::Latest)
+    );
+}
+
+#[test]
+fn a_frozen_view_holds_while_evolution_goes_on() {
+    let mut screen = live();
+    assert_eq!(generation(&screen), 3);
+    screen.press("f");
+    screen.tell(foraging().events[4].clone());
+    assert_eq!(generation(&screen), 3);
+    assert_eq!(screen.0.app().desk().live().generations().len(), 4);
+    screen.press("f");
+    assert_eq!(generation(&screen), 4);
+}
+
+#[test]
+fn evolution_is_steered() {
+    let mut screen = live();
+    assert_eq!(screen.press("p"), [Effect::Pause]);
+    screen.tell(Event::Paused);
+    assert!(screen.text().contains("PAUSED"));
+    assert_eq!(screen.press("n"), [Effect::Step]);
+    screen.tell(Event::Resumed);
+    assert!(screen.text().contains("STEPPING"));
+    screen.tell(Event::Paused);
+    assert_eq!(screen.press("p"), [Effect::Resume]);
+    assert_eq!(screen.press("w"), [Effect::Checkpoint]);
+    assert_eq!(screen.press("X n"), [], "no was the answer");
+    assert_eq!(screen.press("X y"), [Effect::Stop]);
+}
+
+#[test]
+fn a_run_is_not_left_without_a_question() {
+    let mut screen = live();
+    assert_eq!(screen.press("q"), []);
+    assert_eq!(screen.press("n"), []);
+    assert_eq!(screen.press("q d"), [Effect::Detach]);
+    assert_eq!(screen.press("q y"), [Effect::Quit]);
+    screen.0.update(Input::Closed);
+    assert_eq!(
+        screen.press("q"),
+        [Effect::Quit],
+        "there is nothing to lose"
+    );
+}
+
+#[test]
+fn a_replay_cannot_be_steered_and_says_so() {
+    let mut screen = screen();
+    for key in ["p", "n", "w", "X"] {
+        assert_eq!(screen.press(key), []);
+        assert!(screen.text().contains("no evolution to steer"), "{key}");
+    }
+    assert_eq!(screen.press("q"), [Effect::Quit]);
+}
+
+#[test]
+fn what_is_on_the_screen_can_be_exported() {
+    let mut screen = screen();
+    for (keys, name, begin) in [
+        ("e t", "overview-generation6.txt", " ✓ FINISHED"),
+        ("e a", "overview-generation6.ansi", "\u{1b}[0"),
+        ("e s", "overview-generation6.svg", "<svg"),
+        ("3 e d", "hierarchy-generation6.dot", "digraph"),
+        ("4 e c", "fitness-generation6.csv", "generation,best_steps"),
+        ("5 e c", "policy-generation6.csv", "generation,state_type"),
+        ("6 e c", "population-generation6.csv", "rank,id"),
+    ] {
+        let effects = screen.press(keys);
+        let [Effect::Export(export)] = &effects[..] else {
+            panic!("{keys}: {effects:?}");
+        };
+        assert_eq!(export.name, name);
+        assert!(export.contents.starts_with(begin), "{}", export.contents);
+    }
+}
+
+#[test]
+fn help_names_every_key_of_a_view() {
+    let mut screen = foraging().screen("dark", Unicode, (150, 120));
+    screen.press("6 ?");
+    let text = screen.text();
+    for action in [Action::Sort, Action::Help, Action::Pause, Action::Earlier] {
+        let description = action.description().trim_end_matches('.');
+        assert!(text.contains(description), "{description}: {text}");
+    }
+    assert!(!text.contains("The panel before"), "{text}");
+}
+
+#[test]
+fn selecting_puts_an_individual_on_the_stage() {
+    let mut screen = screen();
+    let best = screen.0.app().desk().stage.subject().unwrap();
+    screen.press("6 j 2");
+    let second = screen.0.app().desk().stage.subject().unwrap();
+    assert_ne!(best.id, second.id);
+    let desk = screen.0.app().desk();
+    assert_eq!(desk.shown().unwrap().individuals[1].id, second.id);
+    screen.press("b");
+    assert_eq!(screen.0.app().desk().stage.subject(), Some(best));
+}
+
+#[test]
+fn control_characters_of_a_run_are_made_visible() {
+    let mut screen = screen();
+    let Event::Generation(mut record) = foraging().events[1].clone() else {
+        panic!("no generation");
+    };
+    record.generation = 7;
+    record.individuals[0].tree = String::from("(Root \u{1b}[31mX\u{9b}2J)");
+    let probabilities = record.selection_probabilities[0].get_or_insert_default();
+    probabilities.insert(String::from("\u{1b}]0;x\u{7}"), 0.7);
+    screen.tell(Event::Generation(record));
+    screen.0.update(Input::Message(String::from("a\nb\u{1b}c")));
+    for view in ViewId::all() {
+        screen.0.open(view);
+        let frame = screen.0.app().frame();
+        let mut symbols = frame.content.iter().flat_map(|cell| cell.symbol().chars());
+        assert!(!symbols.any(char::is_control), "{view:?}");
+    }
+}

@@ -1,0 +1,160 @@
+//! Every view as it looks: characters, and below them their styles, a letter each.
+
+use std::fmt::Write;
+
+use maxq_lab::dashboard::Mode;
+use maxq_lab::hierarchy::Glyphs::{Ascii, Unicode};
+use maxq_lab::lab::Event;
+use ratatui::buffer::{Buffer, Cell};
+
+use super::recorded::{Screen, cells, foraging};
+
+/// The characters of a frame, then a letter for the style of each, then what the letters
+/// stand for.
+fn with_styles(frame: &Buffer) -> String {
+    let mut styles: Vec<String> = Vec::new();
+    let (mut characters, mut letters) = (String::new(), String::new());
+    for row in frame.content.chunks(usize::from(frame.area.width).max(1)) {
+        let line: String = row.iter().map(Cell::symbol).collect();
+        let _ = writeln!(characters, "|{line}|");
+        letters.push('|');
+        for cell in row {
+            let style = format!("{} on {} {:?}", cell.fg, cell.bg, cell.modifier);
+            let index = styles.iter().position(|known| *known == style);
+            let index = index.unwrap_or_else(|| {
+                styles.push(style);
+                styles.len() - 1
+            });
+            letters.push(char::from(
+                b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"[index],
+            ));
+        }
+        letters.push_str("|\n");
+    }
+    let legend = styles.iter().enumerate();
+    let legend: String = legend
+        .map(|(index, style)| {
+            format!(
+                "{} {style}\n",
+                char::from(b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"[index])
+            )
+        })
+        .collect();
+    format!("{characters}\n{letters}\n{legend}")
+}
+
+#[track_caller]
+fn assert_looks(name: &str, screen: &Screen) {
+    insta::with_settings!({
+        snapshot_path => "../../snapshots",
+        prepend_module_to_snapshot => false,
+        omit_expression => true,
+    }, {
+        insta::assert_snapshot!(format!("frame_{name}"), with_styles(&screen.0.app().frame()));
+    });
+}
+
+const SMALL: (u16, u16) = (80, 24);
+const MIDDLE: (u16, u16) = (120, 40);
+const LARGE: (u16, u16) = (200, 60);
+
+#[test]
+fn the_overview() {
+    for (name, theme, glyphs, size) in [
+        ("overview_80x24_dark", "dark", Unicode, SMALL),
+        ("overview_120x40_dark", "dark", Unicode, MIDDLE),
+        ("overview_200x60_dark", "dark", Unicode, LARGE),
+        ("overview_120x40_mono", "mono", Unicode, MIDDLE),
+        ("overview_80x24_ascii", "mono", Ascii, SMALL),
+        ("overview_200x60_ascii", "light", Ascii, LARGE),
+    ] {
+        let mut screen = foraging().screen(theme, glyphs, size);
+        screen.wait(2.0);
+        assert_looks(name, &screen);
+    }
+}
+
+#[test]
+fn the_views() {
+    for (name, theme, glyphs, size, keys) in [
+        ("arena_80x24_dark", "dark", Unicode, SMALL, "2"),
+        ("arena_120x40_mono", "mono", Unicode, MIDDLE, "2"),
+        ("arena_80x24_ascii", "high-contrast", Ascii, SMALL, "2"),
+        ("hierarchy_80x24_dark", "dark", Unicode, SMALL, "3"),
+        ("hierarchy_120x40_ascii", "mono", Ascii, MIDDLE, "3"),
+        ("fitness_80x24_dark", "dark", Unicode, SMALL, "4"),
+        ("fitness_120x40_ascii", "mono", Ascii, MIDDLE, "4 [ ["),
+        ("policy_80x24_mono", "mono", Unicode, SMALL, "5"),
+        ("policy_200x60_dark", "dark", Unicode, LARGE, "5"),
+        ("policy_120x40_ascii", "dark", Ascii, MIDDLE, "5"),
+        ("population_80x24_dark", "dark", Unicode, SMALL, "6 j j"),
+        (
+            "population_120x40_sorted",
+            "light",
+            Unicode,
+            MIDDLE,
+            "6 s s s s S",
+        ),
+        ("status_80x24_dark", "dark", Unicode, SMALL, "7"),
+    ] {
+        let mut screen = foraging().screen(theme, glyphs, size);
+        screen.press(keys);
+        screen.wait(2.0);
+        assert_looks(name, &screen);
+    }
+}
+
+#[test]
+fn what_opens_over_a_view() {
+    for (name, size, keys) in [
+        ("help_80x24", SMALL, "?"),
+        ("help_80x24_scrolled", SMALL, "4 ? page-down down"),
+        ("help_200x60", LARGE, "6 ?"),
+        ("export_80x24", SMALL, "e"),
+    ] {
+        let mut screen = foraging().screen("dark", Unicode, size);
+        screen.press(keys);
+        assert_looks(name, &screen);
+    }
+}
+
+/// Pausing evolution and freezing the view are two things and look different.
+#[test]
+fn paused_and_frozen() {
+    let mut screen = foraging().blank(Mode::Live, "dark", Unicode);
+    let (some, rest) = foraging().events.split_at(4);
+    assert_looks("live_before_anything", &screen);
+    for event in some {
+        screen.tell(event.clone());
+    }
+    screen.tell(Event::Progress {
+        generation: 4,
+        lived: 3,
+        population: 6,
+        control_steps: 123_456,
+    });
+    screen.wait(1.0);
+    assert_looks("live_running", &screen);
+    screen.press("f");
+    for event in &rest[..1] {
+        screen.tell(event.clone());
+    }
+    screen.wait(1.0);
+    assert_looks("live_frozen", &screen);
+    screen.press("f p");
+    screen.tell(Event::Paused);
+    screen.wait(1.0);
+    assert_looks("live_paused", &screen);
+    screen.press("q");
+    assert_looks("live_question", &screen);
+}
+
+#[test]
+fn worlds_of_cells() {
+    for (world, keys) in [("taxi", "2"), ("cliff", "2")] {
+        let mut screen = cells(world).screen("dark", Unicode, SMALL);
+        screen.press(keys);
+        screen.wait(1.0);
+        assert_looks(&format!("arena_{world}"), &screen);
+    }
+}

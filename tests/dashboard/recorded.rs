@@ -1,0 +1,108 @@
+//! Recorded runs, and dashboards over them.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use maxq_lab::dashboard::keys::KeyMap;
+use maxq_lab::dashboard::look::{Look, Signs, Theme};
+use maxq_lab::dashboard::{App, Effect, Input, Mode, Still};
+use maxq_lab::hierarchy::Glyphs;
+use maxq_lab::lab::specimen::{Archive, Bench, bench};
+use maxq_lab::lab::{Event, Recording};
+use maxq_lab::scenario::Scenario;
+use tempfile::TempDir;
+
+use super::common;
+
+/// A run that was recorded.
+pub struct Recorded {
+    pub bench: &'static dyn Bench,
+    pub events: Vec<Event>,
+    folder: PathBuf,
+    _parent: TempDir,
+}
+
+impl Recorded {
+    fn new(scenario: &Scenario) -> Self {
+        let parent = tempfile::tempdir().unwrap();
+        let folder = parent.path().join("run");
+        common::run_in(&folder, scenario, 1, &common::threads(1));
+        Self {
+            bench: bench(scenario.clone(), 1).unwrap(),
+            events: Recording::read(&folder).unwrap().events,
+            folder,
+            _parent: parent,
+        }
+    }
+
+    /// A dashboard that has been told nothing.
+    pub fn blank(&self, mode: Mode, theme: &str, glyphs: Glyphs) -> Screen {
+        let look = Look::new(Theme::all(), theme, Signs::of(glyphs));
+        let folder = format!("runs/{}-seed1", self.bench.scenario().name);
+        let app = App::new(self.bench, folder, mode, look, KeyMap::default());
+        Screen(Still::new(
+            app,
+            Archive::new(self.bench, &self.folder, None),
+        ))
+    }
+
+    /// A dashboard over the whole run.
+    pub fn screen(&self, theme: &str, glyphs: Glyphs, (columns, rows): (u16, u16)) -> Screen {
+        let mut screen = self.blank(Mode::Replay, theme, glyphs);
+        screen.0.update(Input::Resize(columns, rows));
+        for event in &self.events {
+            screen.tell(event.clone());
+        }
+        screen.wait(0.1);
+        screen
+    }
+}
+
+/// A short run of the foraging task: six generations of eight individuals.
+pub fn foraging() -> &'static Recorded {
+    static RUN: OnceLock<Recorded> = OnceLock::new();
+    RUN.get_or_init(|| Recorded::new(&common::short(&[])))
+}
+
+/// A short run in a world of cells.
+pub fn cells(name: &str) -> Recorded {
+    let settings = [
+        "evolution.generation_limit=2",
+        "evolution.trial_step_limit=100",
+        "evolution.policy_samples=20",
+    ];
+    let settings = settings.map(String::from);
+    let scenario = Scenario::load(name).unwrap();
+    Recorded::new(&scenario.with_settings(&settings).unwrap())
+}
+
+/// A dashboard on a screen.
+pub struct Screen(pub Still);
+
+impl Screen {
+    /// The run tells something.
+    pub fn tell(&mut self, event: Event) -> Vec<Effect> {
+        self.0.update(Input::Event(Box::new(event)))
+    }
+
+    /// Presses keys, by their names.
+    pub fn press(&mut self, keys: &str) -> Vec<Effect> {
+        let keys = keys.split_whitespace().map(|key| key.parse().unwrap());
+        keys.flat_map(|key| self.0.update(Input::Key(key)))
+            .collect()
+    }
+
+    /// Lets seconds go by, a tenth at a time.
+    pub fn wait(&mut self, seconds: f64) {
+        for _ in 0..(seconds * 10.0).round() as u32 {
+            self.0.update(Input::Tick(Duration::from_millis(100)));
+        }
+    }
+
+    /// What is on the screen, without styles.
+    pub fn text(&self) -> String {
+        let frame = self.0.app().frame();
+        maxq_lab::dashboard::render(&frame, maxq_lab::dashboard::FrameFormat::Text)
+    }
+}
