@@ -14,6 +14,7 @@ use super::keys::{Action, Key, KeyMap, Scope};
 use super::look::{Look, Paint, put};
 use super::overlay::{self, Overlay};
 use super::panel::panel;
+use super::steering::{Steered, steer};
 use super::views::{self, View, ViewId, panels};
 use crate::lab::Event;
 use crate::lab::specimen::Bench;
@@ -243,8 +244,13 @@ impl App {
             self.view = view;
             return Vec::new();
         }
-        if let Some(effects) = self.steer(action) {
-            return effects;
+        match steer(&mut self.desk, action) {
+            Steered::Nothing => {}
+            Steered::Ask(question) => {
+                self.overlay = Some(Overlay::Question(question));
+                return Vec::new();
+            }
+            Steered::Done(effect) => return effect.into_iter().collect(),
         }
         let desk = &mut self.desk;
         match action {
@@ -280,50 +286,6 @@ impl App {
             _ => {}
         }
         Vec::new()
-    }
-
-    /// Actions that steer evolution.
-    fn steer(&mut self, action: Action) -> Option<Vec<Effect>> {
-        use super::desk::Activity::{Finished, Paused, Stopped, Stopping};
-        let desk = &mut self.desk;
-        let activity = desk.activity();
-        let wanted = match action {
-            Action::Quit => {
-                let runs = desk.mode == Mode::Live && !matches!(activity, Finished | Stopped);
-                if runs {
-                    self.overlay = Some(Overlay::Question(overlay::Question::Quit));
-                    return Some(Vec::new());
-                }
-                return Some(vec![Effect::Quit]);
-            }
-            Action::Pause if activity == Paused => Effect::Resume,
-            Action::Pause => Effect::Pause,
-            Action::StepGeneration => Effect::Step,
-            Action::Checkpoint => Effect::Checkpoint,
-            Action::Stop => Effect::Stop,
-            _ => return None,
-        };
-        let why_not = match (desk.mode, activity) {
-            (Mode::Replay, _) => Some("a replay: there is no evolution to steer"),
-            (Mode::Watch, _) => Some("another process's run: it can be watched, not steered"),
-            (_, Finished) => Some("evolution is over"),
-            (_, Stopped | Stopping) => Some("evolution was stopped"),
-            _ => None,
-        };
-        if let Some(why_not) = why_not {
-            desk.say(why_not);
-            return Some(Vec::new());
-        }
-        match wanted {
-            Effect::Stop => {
-                self.overlay = Some(Overlay::Question(overlay::Question::Stop));
-                return Some(Vec::new());
-            }
-            Effect::Step => desk.stepping = true,
-            Effect::Resume | Effect::Pause => desk.stepping = false,
-            _ => {}
-        }
-        Some(vec![wanted])
     }
 
     /// The panel after, or before, the one that has the focus.

@@ -248,9 +248,16 @@ impl Desk {
     }
 
     /// Travels some generations on, or back.
-    pub fn travel_by(&mut self, generations: i64) {
-        if let Some(shown) = self.shown() {
-            self.travel_to(shown.generation.saturating_add_signed(generations));
+    pub fn travel_by(&mut self, by: isize) {
+        let generations = self.model().generations();
+        let shown = self.shown().map(|record| record.generation);
+        let here = generations
+            .iter()
+            .position(|record| Some(record.generation) == shown);
+        let there = here.unwrap_or(0).saturating_add_signed(by);
+        let there = there.min(generations.len().saturating_sub(1));
+        if let Some(number) = generations.get(there).map(|record| record.generation) {
+            self.travel_to(number);
         }
     }
 

@@ -1,15 +1,14 @@
 //! The arena.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Constraint, Rect};
-use ratatui::style::{Modifier, Style};
+use ratatui::layout::Rect;
 
 use super::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Canvas, Layer, Look, Paint, fitted, put};
-use crate::dashboard::sight::Sight;
-use crate::worlds::scene::{Mark, Role, Scenery, Snapshot};
+use crate::dashboard::look::{Paint, fitted, put};
+use crate::dashboard::scene::{draw_scene, in_proportion};
+use crate::worlds::scene::Snapshot;
 
 /// A rollout of the selected individual.
 ///
@@ -75,185 +74,6 @@ impl View for Arena {
          in its generation; evolution knows nothing of it. Shaded is what the robot sees, fine\n\
          lines are its proximity rays. A carried battery is gone from the arena. The state type\n\
          says which subtasks can be active (Thesis Table 4.1). 1x is the robot's own time."
-    }
-}
-
-/// The largest area in the middle that shows the extent in its true proportions, cells
-/// being about twice as high as wide.
-pub(in crate::dashboard) fn in_proportion(area: Rect, extent: [f64; 2]) -> Rect {
-    let ratio = 2.0 * extent[0] / extent[1];
-    let (width, height) = (f64::from(area.width), f64::from(area.height));
-    let height = height.min(width / ratio);
-    let width = width.min(height * ratio);
-    area.centered(
-        Constraint::Length(width.round() as u16),
-        Constraint::Length(height.round() as u16),
-    )
-}
-
-/// Draws the world and, if there is one, the agent in it.
-pub(super) fn draw_scene(
-    desk: &Desk,
-    scenery: &Scenery,
-    snapshot: Option<&Snapshot>,
-    area: Rect,
-    buffer: &mut Buffer,
-) {
-    let look = &desk.look;
-    let mut canvas = Canvas::new(look, area, [0.0, 0.0], scenery.extent);
-    draw_grid(look, &canvas, scenery, area, buffer);
-    if let Some(snapshot) = snapshot {
-        shade_sight(look, &canvas, scenery, snapshot, area, buffer);
-        if let Some(rollout) = desk.stage.rollout() {
-            let trail = &rollout.status().trail;
-            for (from, to) in trail.iter().zip(trail.iter().skip(1)) {
-                canvas.line(*from, *to, Layer::Trail, Paint::Trail);
-            }
-        }
-        for [from, to] in &snapshot.rays {
-            canvas.line(*from, *to, Layer::Ray, Paint::Ray);
-        }
-    }
-    for [from, to] in &scenery.walls {
-        canvas.line(*from, *to, Layer::Wall, Paint::Wall);
-    }
-    canvas.finish(buffer);
-    let moving = snapshot.map_or(&[][..], |snapshot| &snapshot.marks);
-    for mark in scenery.places.iter().chain(moving) {
-        draw_mark(look, &canvas, mark, area, buffer);
-    }
-    if let Some(snapshot) = snapshot {
-        draw_agent(look, &canvas, snapshot, area, buffer);
-    }
-}
-
-/// Shades what the agent sees, behind everything else.
-fn shade_sight(
-    look: &Look,
-    canvas: &Canvas<'_>,
-    scenery: &Scenery,
-    snapshot: &Snapshot,
-    area: Rect,
-    buffer: &mut Buffer,
-) {
-    let Some(sight) = Sight::of(snapshot, scenery) else {
-        return;
-    };
-    let style = look.style(Paint::Sight);
-    let coloured = style.bg.is_some();
-    for row in 0..area.height {
-        for column in 0..area.width {
-            if !sight.sees(canvas.place(column, row)) {
-                continue;
-            }
-            if coloured {
-                let cell = Rect::new(area.x + column, area.y + row, 1, 1);
-                buffer.set_style(cell.intersection(buffer.area), style);
-            } else if (column + 2 * row) % 4 == 0 {
-                put(buffer, area, (column, row), look.signs.sight, style);
-            }
-        }
-    }
-}
-
-pub(super) fn draw_mark(
-    look: &Look,
-    canvas: &Canvas<'_>,
-    mark: &Mark,
-    area: Rect,
-    buffer: &mut Buffer,
-) {
-    let signs = look.signs;
-    let (sign, paint) = match mark.role {
-        Role::Goal => (signs.goal, Paint::Goal),
-        Role::Object => (signs.object, Paint::Object),
-        Role::Hazard => (signs.hazard, Paint::Hazard),
-        Role::Landmark => (mark.label.as_str(), Paint::Landmark),
-    };
-    let style = look.style(paint);
-    put_at(canvas, mark.at, (sign, style), area, buffer);
-}
-
-fn draw_agent(
-    look: &Look,
-    canvas: &Canvas<'_>,
-    snapshot: &Snapshot,
-    area: Rect,
-    buffer: &mut Buffer,
-) {
-    let signs = look.signs;
-    let sign = match snapshot.heading {
-        Some(heading) => {
-            let eighth = (heading / std::f64::consts::FRAC_PI_4)
-                .round()
-                .rem_euclid(8.0);
-            signs.headings[eighth as usize % 8]
-        }
-        None => signs.agent,
-    };
-    // A robot that carries something looks like what it carries.
-    let style = match snapshot.carries {
-        Some(_) => look.style(Paint::Object).add_modifier(Modifier::REVERSED),
-        None => look.style(Paint::Agent),
-    };
-    put_at(canvas, snapshot.at, (sign, style), area, buffer);
-}
-
-/// Writes a sign at a place, over what is there.
-fn put_at(
-    canvas: &Canvas<'_>,
-    at: [f64; 2],
-    (sign, style): (&str, Style),
-    area: Rect,
-    buffer: &mut Buffer,
-) {
-    let Some((column, row)) = canvas.cell(at) else {
-        return;
-    };
-    let Some(cell) = buffer.cell_mut((area.x + column, area.y + row)) else {
-        return;
-    };
-    let background = Style::new().bg(cell.bg);
-    cell.reset();
-    put(buffer, area, (column, row), sign, background.patch(style));
-}
-
-/// Shows where the cells of a world of cells are, and fills those that are hazards.
-fn draw_grid(look: &Look, canvas: &Canvas<'_>, scenery: &Scenery, area: Rect, buffer: &mut Buffer) {
-    let Some([columns, rows]) = scenery.grid else {
-        return;
-    };
-    for (column, row) in (0..columns).flat_map(|column| (0..rows).map(move |row| (column, row))) {
-        let centre = [column as f64 + 0.5, row as f64 + 0.5];
-        if let Some(cell) = canvas.cell(centre) {
-            put(
-                buffer,
-                area,
-                cell,
-                look.signs.trail,
-                look.style(Paint::Border),
-            );
-        }
-    }
-    let hazards = scenery
-        .places
-        .iter()
-        .filter(|mark| mark.role == Role::Hazard);
-    let hazards: Vec<_> = hazards.map(|mark| mark.at).collect();
-    for (column, row) in
-        (0..area.width).flat_map(|column| (0..area.height).map(move |row| (column, row)))
-    {
-        let [x, y] = canvas.place(column, row);
-        let inside = |at: &[f64; 2]| (at[0] - x).abs() <= 0.5 && (at[1] - y).abs() <= 0.5;
-        if hazards.iter().any(inside) {
-            put(
-                buffer,
-                area,
-                (column, row),
-                look.signs.hazard,
-                look.style(Paint::Hazard),
-            );
-        }
     }
 }
 

@@ -9,12 +9,12 @@ use ratatui::style::Modifier;
 use ratatui::text::Line;
 
 use super::View;
-use super::arena::{draw_mark, in_proportion};
 use super::lines::{Pen, draw_lines, number, percent};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put};
+use crate::dashboard::scene::{draw_mark, in_proportion};
 use crate::dashboard::stage::Subject;
 use crate::lab::specimen::{MapView, PolicyCell, PolicyMap};
 use crate::worlds::Catalogue;

@@ -11,12 +11,12 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::View;
-use super::arena::{draw_scene, in_proportion};
 use super::lines::{Pen, draw_lines, last_start};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Look, Paint, fitted, put};
+use crate::dashboard::scene::{draw_scene, in_proportion};
 use crate::hierarchy::{Tree, to_dot};
 use crate::lab::specimen::StepTrace;
 use crate::worlds::{Catalogue, Kind};
