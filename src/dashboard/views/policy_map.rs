@@ -86,6 +86,37 @@ impl Map {
         (letter, Paint::series(place))
     }
 
+    /// Draws the cells where there is no wall.
+    fn shade(
+        &self,
+        desk: &Desk,
+        map: &PolicyMap,
+        canvas: &Canvas<'_>,
+        place: Rect,
+        buffer: &mut Buffer,
+    ) {
+        let (look, extent) = (&desk.look, desk.scenery().extent);
+        let range = map.values().unwrap_or_default();
+        let clipped = place.intersection(buffer.area);
+        for position in clipped.positions() {
+            let (column, row) = (position.x - place.x, position.y - place.y);
+            let is_free = buffer[position].symbol() == " ";
+            let cell = cell_at(map, canvas.place(column, row), extent).filter(|_| is_free);
+            let Some(cell) = cell else { continue };
+            let (sign, paint) = self.sign(desk, cell, range);
+            let style = look.style(paint);
+            // Shaded where there are colours: letters then need not be everywhere.
+            let shaded = !self.by_value && style.fg.is_some() && cell.probability >= CLEAR;
+            let lettered = !shaded || (column + 4 * (row % 2)) % 8 == 3;
+            let style = match shaded {
+                true => style.add_modifier(Modifier::REVERSED),
+                false => style,
+            };
+            let sign = if lettered { sign } else { ' ' };
+            buffer[position].set_char(sign).set_style(style);
+        }
+    }
+
     fn legend(&self, desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
         let look = &desk.look;
         let key = |action| desk.keys.hint(action).map_or(String::new(), |(key, _)| key);
@@ -241,34 +272,12 @@ impl View for Map {
         let (place, legend) = areas(desk, area);
         let scenery = desk.scenery();
         let mut canvas = Canvas::new(look, place, [0.0, 0.0], scenery.extent);
-        let range = map.values().unwrap_or_default();
-        for row in 0..place.height {
-            for column in 0..place.width {
-                let at = canvas.place(column, row);
-                let Some(cell) = cell_at(map, at, scenery.extent) else {
-                    continue;
-                };
-                let (sign, paint) = self.sign(desk, cell, range);
-                let style = look.style(paint);
-                // Shaded where there are colours: letters then need not be everywhere.
-                let shaded = !self.by_value && style.fg.is_some() && cell.probability >= CLEAR;
-                let lettered = !shaded || (column + 4 * (row % 2)) % 8 == 3;
-                let (sign, style) = match (shaded, lettered) {
-                    (true, false) => (' ', style.add_modifier(Modifier::REVERSED)),
-                    (true, true) => (sign, style.add_modifier(Modifier::REVERSED)),
-                    _ => (sign, style),
-                };
-                let text = sign.encode_utf8(&mut [0; 4]).to_owned();
-                put(buffer, place, (column, row), &text, style);
-            }
-        }
         for [from, to] in &scenery.walls {
             canvas.line(*from, *to, Layer::Wall, Paint::Wall);
         }
         canvas.finish(buffer);
-        let state = desk.stage.rollout().map(|rollout| rollout.snapshot());
-        let moving = state.iter().flat_map(|state| &state.marks);
-        for mark in scenery.places.iter().chain(moving) {
+        self.shade(desk, map, &canvas, place, buffer);
+        for mark in scenery.places.iter().chain(&map.marks) {
             draw_mark(look, &canvas, mark, place, buffer);
         }
         draw_lines(look, &self.legend(desk, map), 0, legend, buffer);

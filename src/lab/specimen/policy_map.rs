@@ -2,7 +2,7 @@
 
 use crate::learning::Policy;
 use crate::random::{Purpose, Stream, stream};
-use crate::worlds::scene::Scenic;
+use crate::worlds::scene::{Mark, Scenic};
 use crate::worlds::{StateType, SubtaskId};
 
 /// Noisy readings that a cell is averaged over.
@@ -42,6 +42,8 @@ pub struct PolicyMap {
     /// Row by row, from the largest y down, as it is drawn; `None` where the agent
     /// cannot be or has nothing to do.
     pub cells: Vec<Option<PolicyCell>>,
+    /// What can move or go, where it is in this variant.
+    pub marks: Vec<Mark>,
 }
 
 impl PolicyMap {
@@ -84,9 +86,12 @@ pub(super) fn policy_map<W: Scenic>(
         ];
         policy_cell(world, policy, view, at, rng.clone())
     });
+    let (cells, states): (Vec<_>, Vec<_>) = cells.map(Option::unzip).unzip();
+    let somewhere = states.into_iter().flatten().next();
     PolicyMap {
         view,
-        cells: cells.collect(),
+        cells,
+        marks: somewhere.map_or(Vec::new(), |state| world.snapshot(&state).marks),
     }
 }
 
@@ -96,26 +101,28 @@ fn policy_cell<W: Scenic>(
     view: MapView,
     at: [f64; 2],
     mut rng: Stream,
-) -> Option<PolicyCell> {
+) -> Option<(PolicyCell, W::State)> {
     let catalogue = world.catalogue();
     let mut totals = vec![0.0; catalogue.primitives().count()];
-    let (mut value, mut state_type) = (0.0, catalogue.terminal());
+    let first = world.state_at(at, view.heading, view.variant, &mut rng.clone())?;
+    let state_type = world.state_type(&first);
+    if state_type == catalogue.terminal() {
+        return None;
+    }
+    let mut value = 0.0;
     for _ in 0..SAMPLES {
         let state = world.state_at(at, view.heading, view.variant, &mut rng)?;
-        state_type = world.state_type(&state);
-        if state_type == catalogue.terminal() {
-            return None;
-        }
         policy.look(state_type, world.percept(&state).as_ref());
         policy.add_probabilities(&mut totals);
         value += policy.value() / SAMPLES as f32;
     }
     let likeliest = catalogue.primitives().zip(&totals);
     let (primitive, total) = likeliest.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-    Some(PolicyCell {
+    let cell = PolicyCell {
         state_type,
         primitive,
         probability: total / SAMPLES as f64,
         value,
-    })
+    };
+    Some((cell, first))
 }

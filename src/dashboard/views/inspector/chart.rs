@@ -141,8 +141,9 @@ fn legend(desk: &Desk, profile: &Profile, area: Rect, buffer: &mut Buffer) -> u1
 /// in ten levels.
 ///
 /// ```text
-///  largest                     ApproachNest  0: -3.2 9: -0.4
+///  the largest                 1 ApproachNest
 ///  222222111111112222222       001234567765432100
+///  across: angle deg -60 to 60; down: distance mm 437 to 3500; 0: -3.2, 9: -0.4
 /// ```
 pub(super) fn sheets(
     desk: &Desk,
@@ -151,54 +152,115 @@ pub(super) fn sheets(
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let size = (profile.across.len() as u16, down.len() as u16 + 2);
     let legend = legend(desk, profile, area, buffer) + 1;
     let room = Rect {
         height: area.height.saturating_sub(legend),
         ..area
     };
-    let each = (size.0 + 3).max(1);
-    let across = (room.width / each).max(1);
     let compares = matches!(
         profile.quantity,
         Quantity::Preference | Quantity::Probability
     );
     let first = compares.then_some(None);
     let all = first.into_iter().chain((0..profile.curves.len()).map(Some));
-    for (index, which) in all.enumerate() {
-        let index = index as u16;
-        let (column, row) = (index % across * each, index / across * (size.1 + 1));
+    let all: Vec<_> = all.collect();
+    let (grain, across) = Grain::fitting(profile, down, all.len(), room);
+    for (index, which) in all.into_iter().enumerate() {
+        let (width, height) = (grain.width(profile), grain.height(down));
+        let (column, row) = (index % across, index / across);
         let place = Rect {
-            x: room.x + column,
-            y: room.y + row,
-            width: size.0 + 2,
-            height: size.1,
+            x: room.x.saturating_add((column * (width + GAP)) as u16),
+            y: room.y.saturating_add((row * (height + 2)) as u16),
+            width: (width + GAP - 1) as u16,
+            height: (height + 1) as u16,
         };
-        let place = place.intersection(room);
-        if place.height > 2 {
-            sheet(desk, profile, down, which, place, buffer);
-        }
+        sheet(
+            desk,
+            profile,
+            which,
+            grain,
+            place.intersection(room),
+            buffer,
+        );
     }
-    let units = format!(
-        "across: {} {} to {}; down: {} {} to {}",
-        profile.across.name().replace('_', " "),
-        profile.across.label(0),
-        profile.across.label(profile.across.len().saturating_sub(1)),
-        down.name().replace('_', " "),
-        down.label(0),
-        down.label(down.len().saturating_sub(1)),
+    let [low, high] = range(profile);
+    let ends = |scale: &Scale| {
+        let last = scale.len().saturating_sub(1);
+        let name = scale.name().replace('_', " ");
+        format!("{name} {} to {}", scale.label(0), scale.label(last))
+    };
+    let text = format!(
+        "0: {} 9: {}; across: {}; down: {}",
+        number(low),
+        number(high),
+        ends(&profile.across),
+        ends(down)
     );
-    let units = fitted(&units, usize::from(area.width), desk.look.signs);
+    let text = fitted(&text, usize::from(area.width), desk.look.signs);
     let row = area.height.saturating_sub(legend);
-    put(buffer, area, (0, row), &units, desk.look.style(Paint::Dim));
+    put(buffer, area, (0, row), &text, desk.look.style(Paint::Dim));
+}
+
+/// Columns between sheets.
+const GAP: usize = 3;
+/// Least columns of a sheet: room for its title.
+const TITLE: usize = 14;
+
+/// How finely a sheet is drawn.
+#[derive(Clone, Copy)]
+struct Grain {
+    /// Cells of the terminal for a value.
+    repeat: usize,
+    /// Every so many values of a row, and of a column, one is drawn.
+    stride: [usize; 2],
+}
+
+impl Grain {
+    /// The finest grain with which all sheets find room, and how many then stand side by
+    /// side.
+    fn fitting(profile: &Profile, down: &Scale, sheets: usize, room: Rect) -> (Self, usize) {
+        const GRAINS: [(usize, [usize; 2]); 6] = [
+            (4, [1, 1]),
+            (2, [1, 1]),
+            (1, [1, 1]),
+            (1, [2, 1]),
+            (1, [2, 2]),
+            (1, [4, 4]),
+        ];
+        let mut last = (
+            Self {
+                repeat: 1,
+                stride: [1, 1],
+            },
+            1,
+        );
+        for (repeat, stride) in GRAINS {
+            let grain = Self { repeat, stride };
+            let across = (usize::from(room.width) + GAP) / (grain.width(profile) + GAP);
+            let rows = (usize::from(room.height) + 1) / (grain.height(down) + 2);
+            last = (grain, across.max(1));
+            if across * rows >= sheets {
+                break;
+            }
+        }
+        last
+    }
+
+    fn width(self, profile: &Profile) -> usize {
+        (profile.across.len().div_ceil(self.stride[0]) * self.repeat).max(TITLE)
+    }
+
+    fn height(self, down: &Scale) -> usize {
+        down.len().div_ceil(self.stride[1])
+    }
 }
 
 /// One sheet: of a curve, or of which curve is largest.
 fn sheet(
     desk: &Desk,
     profile: &Profile,
-    down: &Scale,
     which: Option<usize>,
+    grain: Grain,
     area: Rect,
     buffer: &mut Buffer,
 ) {
@@ -212,9 +274,12 @@ fn sheet(
     let title = fitted(&title, usize::from(area.width), look.signs);
     put(buffer, area, (0, 0), &title, look.style(Paint::Title));
     let columns = profile.across.len().max(1);
-    for row in 0..down.len() {
-        for column in 0..columns {
-            let place = row * columns + column;
+    let values = profile.curves.first().map_or(0, |curve| curve.values.len());
+    let rows = (0..values / columns).step_by(grain.stride[1]);
+    for (row, from_row) in rows.enumerate() {
+        let mut column = 0;
+        for from_column in (0..columns).step_by(grain.stride[0]) {
+            let place = from_row * columns + from_column;
             let (text, paint) = match curve {
                 Some(curve) => {
                     let value = curve.values.get(place).copied().unwrap_or(low);
@@ -227,19 +292,9 @@ fn sheet(
                     (sign(best), Paint::series(best))
                 }
             };
-            let at = (column as u16, row as u16 + 1);
-            put(
-                buffer,
-                area,
-                at,
-                text.encode_utf8(&mut [0; 4]),
-                look.style(paint),
-            );
+            let text = text.to_string().repeat(grain.repeat);
+            let at = (column, row as u16 + 1);
+            column = put(buffer, area, at, &text, look.style(paint));
         }
-    }
-    if which.is_some() {
-        let text = format!("0: {}  9: {}", number(low), number(high));
-        let row = down.len() as u16 + 1;
-        put(buffer, area, (0, row), &text, look.style(Paint::Dim));
     }
 }

@@ -93,23 +93,22 @@ impl Shelf {
 
     fn title(&self, desk: &Desk, profile: &Profile) -> String {
         let over = match &profile.down {
-            Some(down) => format!("{} and {}", profile.across.name(), down.name()),
+            Some(down) => format!("{}, {}", profile.across.name(), down.name()),
             None => profile.across.name().to_owned(),
         };
-        let state_type = match profile.quantity {
-            Quantity::ActionValue => String::new(),
-            _ => format!(", state type {}", profile.state_type.number()),
-        };
-        let (place, places) = (self.place + 1, self.places);
-        let of = match places {
+        let over = over.replace('_', " ");
+        let place = match self.places {
             1 => String::new(),
-            _ => format!("  {} {place} of {places}", keys(desk)),
+            places => format!("{}/{places} {}  ", self.place + 1, keys(desk)),
         };
-        format!(
-            "{} over {}{state_type}{of}",
-            words(profile.quantity),
-            over.replace('_', " ")
-        )
+        let what = words(profile.quantity);
+        match profile.quantity {
+            Quantity::ActionValue => format!("{place}{what} over {over}"),
+            _ => {
+                let number = profile.state_type.number();
+                format!("{place}state type {number}: {what} over {over}")
+            }
+        }
     }
 }
 
@@ -123,7 +122,7 @@ fn keys(desk: &Desk) -> String {
 fn words(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::ActionValue => "Q of its actions",
-        Quantity::Preference => "C~+V, what it chooses by,",
+        Quantity::Preference => "C~+V, the preference,",
         Quantity::CTilde => "C~ of its children",
         Quantity::C => "C of its children",
         Quantity::Value => "V of its children",

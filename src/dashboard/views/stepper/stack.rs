@@ -177,9 +177,12 @@ fn action(
         .text(
             format!("  acts {how}, {} {}", signs.tau, number(action.temperature)),
             Paint::Text,
-        )
-        .to(widths.name + 2 * NUMBER - 1)
-        .text("Q", Paint::Dim);
+        );
+    let above = widths.name + 2 * NUMBER - 1;
+    let title = match title.column() < above {
+        true => title.to(above).text("Q", Paint::Dim),
+        false => title,
+    };
     let mut lines = vec![title.line()];
     let labels = shown.actions(action.node).iter();
     let values = action.values.iter().zip(&action.probabilities);
