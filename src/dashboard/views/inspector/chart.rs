@@ -143,7 +143,8 @@ fn legend(desk: &Desk, profile: &Profile, area: Rect, buffer: &mut Buffer) -> u1
 /// ```text
 ///  the largest                 1 ApproachNest
 ///  222222111111112222222       001234567765432100
-///  across: angle deg -60 to 60; down: distance mm 437 to 3500; 0: -3.2, 9: -0.4
+///  0: -3.2  9: -0.4
+///  across angle deg -60 to 60, down distance mm 437 to 3500
 /// ```
 pub(super) fn sheets(
     desk: &Desk,
@@ -152,9 +153,8 @@ pub(super) fn sheets(
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let legend = legend(desk, profile, area, buffer) + 1;
     let room = Rect {
-        height: area.height.saturating_sub(legend),
+        height: area.height.saturating_sub(2),
         ..area
     };
     let compares = matches!(
@@ -189,22 +189,24 @@ pub(super) fn sheets(
         let name = scale.name().replace('_', " ");
         format!("{name} {} to {}", scale.label(0), scale.label(last))
     };
-    let text = format!(
-        "0: {} 9: {}; across: {}; down: {}",
-        number(low),
-        number(high),
-        ends(&profile.across),
-        ends(down)
-    );
-    let text = fitted(&text, usize::from(area.width), desk.look.signs);
-    let row = area.height.saturating_sub(legend);
-    put(buffer, area, (0, row), &text, desk.look.style(Paint::Dim));
+    let first = format!("0: {}  9: {}", number(low), number(high));
+    let second = format!("across {}, down {}", ends(&profile.across), ends(down));
+    for (row, text) in [(0, first), (1, second)] {
+        let text = fitted(&text, usize::from(area.width), desk.look.signs);
+        put(
+            buffer,
+            area,
+            (0, room.height + row),
+            &text,
+            desk.look.style(Paint::Dim),
+        );
+    }
 }
 
 /// Columns between sheets.
 const GAP: usize = 3;
 /// Least columns of a sheet: room for its title.
-const TITLE: usize = 14;
+const TITLE: usize = 15;
 
 /// How finely a sheet is drawn.
 #[derive(Clone, Copy)]
