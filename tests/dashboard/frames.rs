@@ -44,7 +44,7 @@ fn with_styles(frame: &Buffer) -> String {
 }
 
 #[track_caller]
-fn assert_looks(name: &str, screen: &Screen) {
+pub fn assert_looks(name: &str, screen: &Screen) {
     insta::with_settings!({
         snapshot_path => "../../snapshots",
         prepend_module_to_snapshot => false,

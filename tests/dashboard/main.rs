@@ -12,6 +12,7 @@
 mod common;
 
 mod anything;
+mod apart;
 mod behaviour;
 mod frames;
 mod recorded;

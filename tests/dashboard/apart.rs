@@ -1,0 +1,200 @@
+//! Individuals taken apart: inspector, policy map, trial stepper, comparison.
+
+use maxq_lab::dashboard::Effect;
+use maxq_lab::hierarchy::Glyphs::{Ascii, Unicode};
+
+use super::frames::assert_looks;
+use super::recorded::{Screen, cells, foraging};
+
+const SMALL: (u16, u16) = (80, 24);
+const MIDDLE: (u16, u16) = (120, 40);
+const LARGE: (u16, u16) = (200, 60);
+
+fn screen() -> Screen {
+    foraging().screen("dark", Unicode, MIDDLE)
+}
+
+#[test]
+fn the_views_of_an_individual() {
+    for (name, theme, glyphs, size, keys) in [
+        ("stepper_80x24_dark", "dark", Unicode, SMALL, "t . ."),
+        ("stepper_120x40_dark", "dark", Unicode, MIDDLE, "t . . ."),
+        ("stepper_200x60_light", "light", Unicode, LARGE, "t . . ."),
+        ("stepper_80x24_ascii", "mono", Ascii, SMALL, "t . . , ,"),
+        ("stepper_120x40_mono", "mono", Unicode, MIDDLE, "t ."),
+        ("inspector_80x24_dark", "dark", Unicode, SMALL, "i j"),
+        ("inspector_80x24_ascii", "mono", Ascii, SMALL, "i tab tab"),
+        ("inspector_80x24_selection", "dark", Unicode, SMALL, "i tab"),
+        ("inspector_120x40_dark", "dark", Unicode, MIDDLE, "i v j j"),
+        (
+            "inspector_200x60_contrast",
+            "high-contrast",
+            Unicode,
+            LARGE,
+            "i G",
+        ),
+        ("map_80x24_dark", "dark", Unicode, SMALL, "m left left"),
+        ("map_80x24_ascii", "mono", Ascii, SMALL, "m j"),
+        ("map_120x40_values", "dark", Unicode, MIDDLE, "m v"),
+        ("compare_80x24_dark", "dark", Unicode, SMALL, "[ [ [ c j j"),
+        (
+            "compare_120x40_ascii",
+            "mono",
+            Ascii,
+            MIDDLE,
+            "[ [ [ [ c M j",
+        ),
+    ] {
+        let mut screen = foraging().screen(theme, glyphs, size);
+        screen.wait(2.0);
+        screen.press(keys);
+        screen.wait(0.1);
+        assert_looks(name, &screen);
+    }
+}
+
+#[test]
+fn individuals_of_other_worlds() {
+    let taxi = cells("taxi");
+    for (name, keys) in [
+        ("stepper_taxi", "t . ."),
+        ("inspector_taxi", "i j"),
+        ("map_taxi", "m j"),
+    ] {
+        let mut screen = taxi.screen("dark", Unicode, MIDDLE);
+        screen.press(keys);
+        screen.wait(0.1);
+        assert_looks(name, &screen);
+    }
+}
+
+/// Step and trial of the step that is shown.
+fn shown(screen: &Screen) -> (u64, u64) {
+    let text = screen.text();
+    let after = |word: &str| -> u64 {
+        let rest = text.split(word).nth(1).unwrap_or_else(|| panic!("{text}"));
+        let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+        digits.parse().unwrap()
+    };
+    (after("trial "), after(" step "))
+}
+
+#[test]
+fn keys_step_forth_and_back_through_a_trial() {
+    let mut screen = screen();
+    screen.press("t .");
+    let (trial, step) = shown(&screen);
+    screen.press(". . .");
+    assert_eq!(shown(&screen), (trial, step + 3));
+    screen.press(", ,");
+    assert_eq!(shown(&screen), (trial, step + 1));
+    assert!(screen.text().contains("2 steps back"));
+    // Forth again through what was recorded, then on.
+    screen.press(". .");
+    assert_eq!(shown(&screen), (trial, step + 3));
+    screen.press(".");
+    assert_eq!(shown(&screen), (trial, step + 4));
+    screen.wait(3.0);
+    assert_eq!(shown(&screen), (trial, step + 4), "it is halted");
+    screen.press("N .");
+    assert_eq!(shown(&screen), (trial + 1, 1));
+}
+
+#[test]
+fn every_part_of_a_step_is_on_the_screen() {
+    let mut screen = screen();
+    screen.press("t .");
+    let trace = screen.0.app().desk().stage.trace(0).unwrap().clone();
+    let text = screen.text();
+    let catalogue = foraging().bench.catalogue();
+    let tree = screen.0.app().desk().stage.tree().unwrap().clone();
+    let name = |node: usize| catalogue.subtask(tree.subtask(node)).name;
+    for level in &trace.explanation.levels {
+        assert!(text.contains(name(level.node)));
+        for choice in &level.choices {
+            for value in [choice.preference(), choice.value, choice.c_tilde, choice.c] {
+                let number = format!("{value:.3}").replace("-0.000", "0.000");
+                assert!(text.contains(&number), "{number} in\n{text}");
+            }
+        }
+    }
+    for lesson in &trace.explanation.lessons {
+        let told = format!("{} learns about {}", name(lesson.node), name(lesson.child));
+        assert!(text.contains(&told), "{told} in\n{text}");
+        assert!(text.contains(&format!("pseudo-reward {}", lesson.pseudo_reward)));
+        assert!(text.contains(&format!("N {}", lesson.updates[0].steps)));
+    }
+    assert!(text.contains(&format!("reward {:.3}", trace.explanation.reward)));
+}
+
+#[test]
+fn the_map_turns_and_changes_its_load() {
+    let mut screen = screen();
+    screen.press("m");
+    let at_first = screen.text();
+    assert!(at_first.contains("heading 0") && at_first.contains("empty-handed"));
+    screen.press("left down");
+    let turned = screen.text();
+    assert!(turned.contains("heading 15") && turned.contains("carrying"));
+    screen.press("right up");
+    assert_eq!(screen.text(), at_first);
+    screen.press("v");
+    assert!(screen.text().contains("V(root)"));
+}
+
+#[test]
+fn the_marked_individual_is_what_others_are_compared_with() {
+    let mut screen = screen();
+    screen.press("6 j j j M");
+    let marked = screen.0.app().desk().selected().unwrap().id;
+    screen.press("b c");
+    assert_eq!(screen.0.app().desk().rival().unwrap().id, marked);
+    assert!(
+        screen
+            .text()
+            .contains(&format!("individual {marked}, the marked one"))
+    );
+    // Who is marked is not compared with himself.
+    screen.press("j j j");
+    assert_eq!(screen.0.app().desk().selected().unwrap().id, marked);
+    assert_ne!(screen.0.app().desk().rival().unwrap().id, marked);
+}
+
+fn exported(screen: &mut Screen, keys: &str) -> String {
+    let effects = screen.press(keys);
+    let export = effects.into_iter().find_map(|effect| match effect {
+        Effect::Export(export) => Some(export.contents),
+        _ => None,
+    });
+    export.unwrap_or_else(|| panic!("{keys} exports nothing"))
+}
+
+#[test]
+fn what_is_taken_apart_can_be_exported() {
+    let mut screen = screen();
+    let head = |csv: &str| csv.lines().next().unwrap().to_owned();
+    for (view, columns, least) in [
+        ("t .", "trial,step,node,subtask,item,quantity,value", 20),
+        (
+            "i",
+            "quantity,state_type,across,at,down,at_down,of,value",
+            6,
+        ),
+        ("m", "x,y,state_type,primitive,probability,value", 100),
+        ("c", "individual,rank,node,parent,subtask,only_here", 6),
+    ] {
+        screen.press(view);
+        let csv = exported(&mut screen, "e c");
+        assert_eq!(head(&csv), columns);
+        assert!(csv.lines().count() > least, "{view}: {csv}");
+    }
+    for view in ["t", "i", "c"] {
+        screen.press(view);
+        assert!(exported(&mut screen, "e d").starts_with("digraph hierarchy"));
+    }
+    screen.press("i tab");
+    assert!(exported(&mut screen, "e c").starts_with("state_type,primitive,probability"));
+    screen.press("tab");
+    assert!(exported(&mut screen, "e c").starts_with("id,born,last_seen,rank"));
+    assert!(exported(&mut screen, "e d").starts_with("digraph lineage"));
+}
