@@ -211,6 +211,39 @@ fn svg(buffer: &Buffer) -> String {
     svg
 }
 
+fn is_braille(c: char) -> bool {
+    ('\u{2800}'..='\u{28ff}').contains(&c)
+}
+
+/// Draws the dots of braille patterns: few fonts have them in the width of the others.
+fn dots(svg: &mut String, text: &str, (left, top): (f64, f64), colour: [u8; 3]) {
+    /// Column and row of the dot of each bit.
+    const PLACES: [(u8, u8); 8] = [
+        (0, 0),
+        (0, 1),
+        (0, 2),
+        (1, 0),
+        (1, 1),
+        (1, 2),
+        (0, 3),
+        (1, 3),
+    ];
+    let mut path = String::new();
+    for (index, c) in text.chars().enumerate().filter(|(_, c)| is_braille(*c)) {
+        for (bit, (column, row)) in PLACES.iter().enumerate() {
+            if (u32::from(c) - 0x2800) >> bit & 1 == 1 {
+                let x = left + (index as f64 + 0.15 + 0.5 * f64::from(*column)) * CELL[0];
+                let y = top + (0.1 + 0.25 * f64::from(*row)) * CELL[1];
+                // Writing to a string cannot fail.
+                let _ = write!(path, "M{x:.1} {y:.1}h2v2h-2z");
+            }
+        }
+    }
+    if !path.is_empty() {
+        let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{}\"/>", hex(colour));
+    }
+}
+
 fn same_style(a: &Cell, b: &Cell) -> bool {
     (a.fg, a.bg, a.modifier) == (b.fg, b.bg, b.modifier)
 }
@@ -239,6 +272,8 @@ fn run(svg: &mut String, (x, y): (usize, usize), cells: &[Cell], (paper, ink): (
         );
     }
     let text: String = cells.iter().map(Cell::symbol).collect();
+    dots(svg, &text, (left, top), fg);
+    let text = text.replace(is_braille, " ");
     if text.trim().is_empty() {
         return;
     }

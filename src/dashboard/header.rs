@@ -8,6 +8,9 @@ use super::keys::Action;
 use super::look::{Paint, fitted, one_line, put, width};
 use super::views::ViewId;
 
+/// Actions that lead around the overview.
+const AROUND: &[Action] = &[Action::NextPanel, Action::Open];
+
 /// Actions that a hint bar names after those of the view.
 const COMMON: &[Action] = &[
     Action::Pause,
@@ -122,9 +125,9 @@ pub(super) fn hint_bar(
         put(buffer, line, (0, 0), &text, look.style(Paint::Notice));
         return;
     }
-    let more = match view {
-        ViewId::Overview => &[Action::NextPanel, Action::Open][..],
-        _ => &[Action::Back][..],
+    let order = match view {
+        ViewId::Overview => [AROUND, COMMON, hints],
+        _ => [hints, &[Action::Back], COMMON],
     };
     let pairs = |actions: &[&[Action]]| {
         let actions = actions.iter().flat_map(|actions| actions.iter());
@@ -136,7 +139,7 @@ pub(super) fn hint_bar(
     let right: u16 = always.iter().map(columns).sum();
     let right = line.width.saturating_sub(right);
     let mut column = 0;
-    for pair in pairs(&[hints, more, COMMON]) {
+    for pair in pairs(&order) {
         if column + columns(&pair) > right {
             break;
         }

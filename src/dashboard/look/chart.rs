@@ -15,6 +15,8 @@ pub struct Curve {
     pub points: Vec<Option<[f64; 2]>>,
     /// How it is painted.
     pub paint: Paint,
+    /// A letter at its end, so that it is told from others without colours too.
+    pub letter: Option<char>,
 }
 
 /// Curves over a common axis.
@@ -91,6 +93,19 @@ impl Chart {
             draw_curve(&mut canvas, curve, layer);
         }
         canvas.finish(buffer);
+        for curve in self.curves.iter().rev() {
+            let end = curve.points.iter().flatten().last();
+            let cell = end.and_then(|end| canvas.cell(*end));
+            if let (Some(letter), Some(cell)) = (curve.letter, cell) {
+                put(
+                    buffer,
+                    plot,
+                    cell,
+                    &letter.to_string(),
+                    look.style(curve.paint),
+                );
+            }
+        }
         if axis == 1 {
             self.draw_axis(look, &canvas, plot, buffer);
         }

@@ -38,7 +38,7 @@ impl View for Arena {
         };
         let separator = desk.look.signs.separator;
         let (id, generation) = (subject.id, subject.generation);
-        format!("{speed} {separator} individual {id} of generation {generation}")
+        format!("{speed} {separator} id {id}, generation {generation}")
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {

@@ -143,6 +143,7 @@ fn fitness_chart(desk: &Desk) -> Option<Chart> {
             .map(|(generation, steps)| Some([*generation, (*steps)?[index]]))
             .collect(),
         paint: *paint,
+        letter: None,
     });
     let mut chart = Chart::of(curves.collect(), [lowest * 0.9, lowest]);
     chart.cursor = cursor(desk);
@@ -155,6 +156,7 @@ fn difference_chart(desk: &Desk) -> Chart {
     let curve = Curve {
         points: points.collect(),
         paint: Paint::Series1,
+        letter: None,
     };
     let mut chart = Chart::of(vec![curve], [-1.0, 0.0]);
     chart.cursor = cursor(desk);

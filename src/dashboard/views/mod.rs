@@ -29,6 +29,7 @@ use super::input::Effect;
 use super::keys::Action;
 use super::look::{Paint, fitted, put};
 use crate::evolution::Origin;
+use crate::worlds::Catalogue;
 
 /// A view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -209,4 +210,20 @@ fn origin(origin: &Origin) -> String {
         } => format!("{} x {}", receiver.id, donor.id),
         Origin::Copied { from } => format!("copy of {from}"),
     }
+}
+
+/// One capital letter for each primitive subtask: the first of its capitals, or else of
+/// its letters, that no other has.
+fn letters(catalogue: &Catalogue) -> Vec<char> {
+    let mut letters: Vec<char> = Vec::new();
+    for primitive in catalogue.primitives() {
+        let name = catalogue.subtask(primitive).name;
+        let capitals = name.chars().filter(char::is_ascii_uppercase);
+        let others = name.chars().map(|c| c.to_ascii_uppercase());
+        let free = capitals
+            .chain(others)
+            .find(|letter| !letters.contains(letter));
+        letters.push(free.unwrap_or('?'));
+    }
+    letters
 }

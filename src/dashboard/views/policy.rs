@@ -7,7 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::{View, nothing_yet};
+use super::{View, letters, nothing_yet};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Paint, fitted, one_line, put, width};
@@ -185,7 +185,7 @@ fn label(name: &str, share: f64, room: usize) -> String {
 
 fn chart(desk: &Desk, index: usize) -> Chart {
     let catalogue = desk.catalogue();
-    let records = desk.model().generations();
+    let (records, letters) = (desk.model().generations(), letters(catalogue));
     let curves = catalogue
         .primitives()
         .enumerate()
@@ -198,6 +198,7 @@ fn chart(desk: &Desk, index: usize) -> Chart {
             Curve {
                 points: records.iter().map(|record| share(record)).collect(),
                 paint: Paint::series(place),
+                letter: letters.get(place).copied(),
             }
         });
     // A primitive that is never selected has no curve to look at.

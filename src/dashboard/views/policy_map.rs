@@ -8,8 +8,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use ratatui::text::Line;
 
-use super::View;
 use super::lines::{Pen, draw_lines, number, percent};
+use super::{View, letters};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
@@ -17,7 +17,6 @@ use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put};
 use crate::dashboard::scene::{draw_mark, in_proportion};
 use crate::dashboard::stage::Subject;
 use crate::lab::specimen::{MapView, PolicyCell, PolicyMap};
-use crate::worlds::Catalogue;
 
 /// Headings that keys go through.
 const HEADINGS: usize = 24;
@@ -154,22 +153,6 @@ fn with_keys(desk: &Desk, text: &str, keys: &str) -> Line<'static> {
         .cell(text, 20, Paint::Title)
         .text(format!(" {keys}"), Paint::Key)
         .line()
-}
-
-/// One capital letter for each primitive subtask: the first of its capitals, or else of
-/// its letters, that no other has.
-fn letters(catalogue: &Catalogue) -> Vec<char> {
-    let mut letters: Vec<char> = Vec::new();
-    for primitive in catalogue.primitives() {
-        let name = catalogue.subtask(primitive).name;
-        let capitals = name.chars().filter(char::is_ascii_uppercase);
-        let others = name.chars().map(|c| c.to_ascii_uppercase());
-        let free = capitals
-            .chain(others)
-            .find(|letter| !letters.contains(letter));
-        letters.push(free.unwrap_or('?'));
-    }
-    letters
 }
 
 fn policy_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
