@@ -76,6 +76,16 @@ impl WorldTask for Task {
     type Output = Result<Report, Failure>;
 
     fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        let mut primitives = experiment.catalogue().primitives();
+        if primitives.all(|primitive| experiment.world.training(primitive).is_none()) {
+            let name = &experiment.scenario.name;
+            return Err(format!(
+                "{name}: found primitive subtasks that are not trained, but learn with each \
+                 individual; allowed: a world whose primitive subtasks are trained, such as \
+                 foraging"
+            )
+            .into());
+        }
         let workers = Workers::new(usize::from(self.args.threads))?;
         let skills = experiment.train(self.args.seed, 0, &workers, &self.gate)?;
         let catalogue = experiment.catalogue();
