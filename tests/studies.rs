@@ -23,6 +23,7 @@ use maxq_lab::lab::{Event, Keep, RunFolder, read_events};
 use maxq_lab::report::{
     Arm, Base, Happening, Plan, Reevaluation, Stage, Study, StudyControls, carry_out, status,
 };
+use maxq_lab::scenario::EMBEDDED;
 
 fn plan(arms: &[Base]) -> Plan {
     let arm = |base: &Base| Arm {
@@ -241,6 +242,17 @@ fn every_arm_does_what_its_name_says() {
         "as many generations"
     );
     assert_eq!(trials["flat"], trials["hand_designed"]);
+}
+
+#[test]
+fn every_arm_fits_every_embedded_scenario() {
+    let names: Vec<_> = EMBEDDED
+        .iter()
+        .map(|embedded| embedded.name.to_owned())
+        .collect();
+    let arms: Vec<_> = Base::ALL.map(Arm::of).to_vec();
+    let plan = Plan::of(&names, "1".parse().unwrap(), arms).unwrap();
+    assert_eq!(plan.scenarios.len(), EMBEDDED.len());
 }
 
 #[test]

@@ -187,14 +187,18 @@ impl Plan {
             })
         });
         let scenarios: Vec<_> = loaded.collect::<Result<_, _>>()?;
+        let names: Vec<_> = scenarios
+            .iter()
+            .map(|scenario| scenario.name.as_str())
+            .collect();
+        // Too many names make no name.
+        let name = names.join("_");
         let control = arms.iter().find(|arm| arm.base == Base::RandomSelection);
         Self {
             format: PLAN_FORMAT,
-            name: scenarios
-                .iter()
-                .map(|s| s.name.as_str())
-                .collect::<Vec<_>>()
-                .join("_"),
+            name: Some(name)
+                .filter(|name| is_name(name))
+                .unwrap_or_else(|| String::from("study")),
             description: String::new(),
             control: control.map(|arm| arm.name.clone()),
             scenarios,

@@ -84,6 +84,10 @@ pub fn write_report(study: &Study) -> Result<Written, ReportError> {
         .collect();
     for number in Number::ALL.into_iter().filter(|_| !all.is_empty()) {
         let figure = study_figure(study, &all, number)?;
+        if figure.panels.is_empty() {
+            // Not every world has primitive subtasks that look at a single reading.
+            continue;
+        }
         let name = number.name();
         contents.push((format!("figure-{name}.svg"), figure.svg()?.into_bytes()));
         contents.push((
