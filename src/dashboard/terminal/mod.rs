@@ -8,6 +8,7 @@ mod jobs;
 mod keyboard;
 mod outlet;
 mod painter;
+mod pen;
 mod screen;
 mod tty;
 
@@ -56,8 +57,6 @@ impl Terminal {
     /// # Errors
     /// When standard input is no terminal, or the operating system refuses.
     pub fn open(mouse: bool) -> io::Result<Self> {
-        // The theme alone decides about colours.
-        crossterm::style::force_color_output(true);
         let screen = Screen::new(Tty::open()?, mouse);
         give_back_on_panic();
         let (keyboard, keys) = Keyboard::start(Arc::clone(&screen))?;

@@ -1,0 +1,170 @@
+//! What the dashboard costs: time to the first frame, bytes a second over the line, time
+//! that evolution loses. The real program is measured in a real terminal.
+//!
+//! `cargo bench --bench dashboard` prints all figures, the goals beside them. Times are those
+//! of the machine as it is; the cost for evolution is taken in processor time, in pairs of
+//! runs with and without the dashboard, of which the median counts.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+#[path = "../tests/terminal/pty.rs"]
+mod pty;
+
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use pty::{Pty, processor_seconds, program};
+use tempfile::TempDir;
+
+/// Settings with which evolution goes on until it is stopped.
+const ENDLESS: [&str; 4] = [
+    "--set",
+    "evolution.variation=none",
+    "--set",
+    "evolution.generation_limit=100000",
+];
+
+/// Time over which bytes are counted.
+const COUNTED: Duration = Duration::from_secs(20);
+
+/// Time in which nothing may come.
+const SILENT: Duration = Duration::from_secs(5);
+
+/// Starts of the program.
+const STARTS: usize = 9;
+
+/// Pairs of runs.
+const PAIRS: usize = 5;
+
+fn main() {
+    // Cargo asks every benchmark for its list of tests.
+    if std::env::args().any(|argument| argument == "--list") {
+        return;
+    }
+    println!("{:52} {:>14} {:>16}", "", "measured", "goal");
+    first_frame();
+    bytes("120x40, 10 frames a second, all panels moving", &[], 20.0);
+    bytes("120x40, --fps 2, all panels moving", &["--fps", "2"], 5.0);
+    silence();
+    cost();
+}
+
+fn line(what: &str, measured: &str, goal: &str) {
+    println!("{what:52} {measured:>14} {goal:>16}");
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn run(folder: &Path, more: &[&str]) -> Pty {
+    let folder = folder.to_str().unwrap();
+    let arguments = ["run", "environment-3", "--keep", "none", "--out", folder];
+    Pty::start(120, 40, program(&[&arguments[..], more].concat()))
+}
+
+fn first_frame() {
+    let times = (0..STARTS).map(|_| {
+        let parent = TempDir::new().unwrap();
+        let begun = Instant::now();
+        let pty = run(&parent.path().join("run"), &[]);
+        pty.wait("a frame", |pty| pty.screen().contains("quit"));
+        begun.elapsed().as_secs_f64() * 1000.0
+    });
+    let time = median(times.collect());
+    line("start to first frame", &format!("{time:.0} ms"), "150 ms");
+}
+
+/// Counts from the moment on at which there is something to see.
+fn bytes(what: &str, more: &[&str], goal: f64) {
+    let parent = TempDir::new().unwrap();
+    let pty = run(&parent.path().join("run"), &[&ENDLESS[..], more].concat());
+    pty.wait("a generation", |pty| pty.screen().contains("generation 2"));
+    let (before, begun) = (pty.bytes(), Instant::now());
+    thread::sleep(COUNTED);
+    let rate = (pty.bytes() - before) as f64 / begun.elapsed().as_secs_f64() / 1000.0;
+    line(what, &format!("{rate:.1} kB/s"), &format!("{goal:.0} kB/s"));
+}
+
+fn silence() {
+    let parent = TempDir::new().unwrap();
+    let mut pty = run(&parent.path().join("run"), &ENDLESS);
+    pty.wait("a generation", |pty| pty.screen().contains("generation 2"));
+    pty.press("p");
+    pty.wait("the pause", |pty| pty.screen().contains("PAUSED"));
+    pty.press(" ");
+    // Frames that are on their way, and messages that have their time.
+    let mut last = (0, Instant::now());
+    pty.wait("silence", |pty| {
+        if pty.bytes() != last.0 {
+            last = (pty.bytes(), Instant::now());
+        }
+        last.1.elapsed() > Duration::from_secs(1)
+    });
+    let before = pty.bytes();
+    let used = processor_seconds(pty.id()).unwrap();
+    thread::sleep(SILENT);
+    let sent = pty.bytes() - before;
+    let used = (processor_seconds(pty.id()).unwrap() - used) / SILENT.as_secs_f64();
+    line(
+        "paused, rollout halted",
+        &format!("{sent} bytes"),
+        "0 bytes",
+    );
+    line(
+        "paused, rollout halted: processor",
+        &format!("{:.1} %", 100.0 * used),
+        "",
+    );
+}
+
+/// One thread computes, so that the dashboard has a processor of its own where there are two;
+/// the processor time of both is counted.
+fn cost() {
+    let ratios: Vec<[f64; 2]> = (0..PAIRS)
+        .map(|_| {
+            let [plain, shown] = [&["--headless"][..], &[]].map(whole_run);
+            [shown[0] / plain[0], shown[1] / plain[1]]
+        })
+        .collect();
+    for (at, what) in ["time", "processor time, all threads"]
+        .into_iter()
+        .enumerate()
+    {
+        let ratio = median(ratios.iter().map(|ratio| ratio[at]).collect());
+        let cost = format!("{:+.1} %", 100.0 * (ratio - 1.0));
+        line(
+            &format!("evolution with the dashboard open: {what}"),
+            &cost,
+            if at == 0 { "+2 %" } else { "" },
+        );
+    }
+}
+
+/// Time until evolution is over, and processor time that the program has used by then.
+fn whole_run(more: &[&str]) -> [f64; 2] {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("run");
+    let settings = [
+        "--threads",
+        "1",
+        "--set",
+        "evolution.variation=none",
+        "--set",
+        "evolution.generation_limit=40",
+    ];
+    let begun = Instant::now();
+    let mut pty = run(&folder, &[&settings[..], more].concat());
+    let summary = folder.join("summary.json");
+    let mut used = 0.0;
+    while !summary.exists() {
+        used = processor_seconds(pty.id()).unwrap_or(used);
+        thread::sleep(Duration::from_millis(1));
+    }
+    let time = begun.elapsed().as_secs_f64();
+    pty.press("q");
+    pty.ended();
+    [time, used]
+}

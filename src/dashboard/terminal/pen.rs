@@ -1,0 +1,135 @@
+//! The look that a terminal gives to what is printed, and the shortest way to another.
+
+use std::fmt::Write;
+
+use ratatui::buffer::Cell;
+use ratatui::style::{Color, Modifier};
+
+/// Looks that show on a blank.
+const ON_BLANKS: Modifier = Modifier::REVERSED
+    .union(Modifier::UNDERLINED)
+    .union(Modifier::CROSSED_OUT);
+
+/// Each look with the parameters of SGR that begin it and end it (ECMA-48, 8.3.117). What ends
+/// bold ends dim too.
+const LOOKS: [(Modifier, u8, u8); 9] = [
+    (Modifier::BOLD, 1, 22),
+    (Modifier::DIM, 2, 22),
+    (Modifier::ITALIC, 3, 23),
+    (Modifier::UNDERLINED, 4, 24),
+    (Modifier::SLOW_BLINK, 5, 25),
+    (Modifier::RAPID_BLINK, 6, 25),
+    (Modifier::REVERSED, 7, 27),
+    (Modifier::HIDDEN, 8, 28),
+    (Modifier::CROSSED_OUT, 9, 29),
+];
+
+/// Colours and looks that are in force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Pen {
+    front: Color,
+    back: Color,
+    looks: Modifier,
+}
+
+impl Pen {
+    /// The pen that a cell needs, given the one that is in force: of a blank only the
+    /// background is seen.
+    pub(super) fn for_cell(self, cell: &Cell) -> Self {
+        let whole = Self {
+            front: cell.fg,
+            back: cell.bg,
+            looks: cell.modifier,
+        };
+        let plain = !(self.looks | cell.modifier).intersects(ON_BLANKS);
+        match cell.symbol() {
+            " " if plain => Self {
+                back: cell.bg,
+                ..self
+            },
+            _ => whole,
+        }
+    }
+
+    /// Appends what takes the terminal from this pen to another: the shorter of a change
+    /// and a new start.
+    pub(super) fn change(self, to: Self, bytes: &mut Vec<u8>) {
+        if self == to {
+            return;
+        }
+        let change = self.parameters(to);
+        let anew = format!("0;{}", Self::default().parameters(to));
+        let shorter = if change.len() <= anew.len() {
+            change
+        } else {
+            anew
+        };
+        bytes.extend_from_slice(b"\x1b[");
+        bytes.extend_from_slice(shorter.trim_end_matches(';').as_bytes());
+        bytes.push(b'm');
+    }
+
+    /// Parameters of a change, each with a semicolon behind it.
+    fn parameters(self, to: Self) -> String {
+        let mut text = String::new();
+        let mut looks = self.looks;
+        for (look, _, end) in LOOKS {
+            if looks.contains(look) && !to.looks.contains(look) {
+                let _infallible = write!(text, "{end};");
+                for (other, _, same) in LOOKS {
+                    if same == end {
+                        looks.remove(other);
+                    }
+                }
+            }
+        }
+        for (look, begin, _) in LOOKS {
+            if to.looks.contains(look) && !looks.contains(look) {
+                let _infallible = write!(text, "{begin};");
+            }
+        }
+        if self.front != to.front {
+            colour(to.front, 30, &mut text);
+        }
+        if self.back != to.back {
+            colour(to.back, 40, &mut text);
+        }
+        text
+    }
+}
+
+/// Parameters of a colour; `base` is 30 for the foreground, 40 for the background.
+fn colour(colour: Color, base: u8, text: &mut String) {
+    let named = |number: u8| match number {
+        0..8 => base + number,
+        _ => base + 60 + number - 8,
+    };
+    let parameter = match colour {
+        Color::Reset => base + 9,
+        Color::Black => named(0),
+        Color::Red => named(1),
+        Color::Green => named(2),
+        Color::Yellow => named(3),
+        Color::Blue => named(4),
+        Color::Magenta => named(5),
+        Color::Cyan => named(6),
+        Color::Gray => named(7),
+        Color::DarkGray => named(8),
+        Color::LightRed => named(9),
+        Color::LightGreen => named(10),
+        Color::LightYellow => named(11),
+        Color::LightBlue => named(12),
+        Color::LightMagenta => named(13),
+        Color::LightCyan => named(14),
+        Color::White => named(15),
+        Color::Indexed(number) => {
+            let _infallible = write!(text, "{};5;{number};", base + 8);
+            return;
+        }
+        Color::Rgb(red, green, blue) => {
+            let _infallible = write!(text, "{};2;{red};{green};{blue};", base + 8);
+            return;
+        }
+    };
+    let _infallible = write!(text, "{parameter};");
+}
