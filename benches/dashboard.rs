@@ -1,7 +1,8 @@
 //! What the dashboard costs: time to the first frame, bytes a second over the line, time
 //! that evolution loses. The real program is measured in a real terminal.
 //!
-//! `cargo bench --bench dashboard` prints all figures, the goals beside them. Times are those
+//! `cargo bench --bench dashboard` prints all figures, the goals beside them; `-- start`,
+//! `bytes`, `silence` or `cost` some of them. Times are those
 //! of the machine as it is; the cost for evolution is taken in processor time, in pairs of
 //! runs with and without the dashboard, of which the median counts.
 
@@ -43,11 +44,19 @@ fn main() {
         return;
     }
     println!("{:52} {:>14} {:>16}", "", "measured", "goal");
-    first_frame();
-    bytes("120x40, 10 frames a second, all panels moving", &[], 20.0);
-    bytes("120x40, --fps 2, all panels moving", &["--fps", "2"], 5.0);
-    silence();
-    cost();
+    let parts: [(&str, fn()); 4] = [
+        ("start", first_frame),
+        ("bytes", all_bytes),
+        ("silence", silence),
+        ("cost", cost),
+    ];
+    let asked: Vec<_> = std::env::args().skip(1).collect();
+    for (name, part) in parts {
+        let named = asked.iter().any(|argument| argument == name);
+        if named || !asked.iter().any(|argument| !argument.starts_with('-')) {
+            part();
+        }
+    }
 }
 
 fn line(what: &str, measured: &str, goal: &str) {
@@ -75,6 +84,12 @@ fn first_frame() {
     });
     let time = median(times.collect());
     line("start to first frame", &format!("{time:.0} ms"), "150 ms");
+}
+
+fn all_bytes() {
+    let moving = "all panels moving";
+    bytes(&format!("120x40, 10 frames a second, {moving}"), &[], 20.0);
+    bytes(&format!("120x40, --fps 2, {moving}"), &["--fps", "2"], 5.0);
 }
 
 /// Counts from the moment on at which there is something to see.

@@ -205,7 +205,8 @@ mod tests {
     }
 
     fn stroke() -> impl Strategy<Value = Stroke> {
-        let texts = proptest::sample::select(vec!["a", "bc d", "   ", "⣿⣿", "宽x", " e "]);
+        // No wide characters: one of which half is overwritten differs between terminals.
+        let texts = proptest::sample::select(vec!["a", "bc d", "   ", "⣿⣿", " e "]);
         (0..WIDTH, 0..HEIGHT, texts, style())
     }
 
