@@ -237,7 +237,8 @@ impl View for Map {
     fn caption(&self, desk: &Desk) -> String {
         let subject = desk.stage.subject();
         subject.map_or(String::new(), |subject| {
-            format!("individual {}", subject.id)
+            let (id, generation) = (subject.id, subject.generation);
+            format!("individual {id}, generation {generation}")
         })
     }
 
