@@ -131,7 +131,7 @@ pub(super) fn hint_bar(
     };
     let pairs = |actions: &[&[Action]]| {
         let actions = actions.iter().flat_map(|actions| actions.iter());
-        let useful = actions.filter(|action| desk.mode == Mode::Live || !is_steering(**action));
+        let useful = actions.filter(|action| is_useful(desk.mode, **action));
         let hints = useful.filter_map(|&action| desk.keys.hint(action));
         hints.collect::<Vec<_>>()
     };
@@ -151,12 +151,15 @@ pub(super) fn hint_bar(
     }
 }
 
-/// Whether an action is of use where evolution goes on only.
-fn is_steering(action: Action) -> bool {
-    matches!(
-        action,
-        Action::Pause | Action::StepGeneration | Action::Checkpoint | Action::Stop | Action::Freeze
-    )
+/// Whether an action can do something to a run that is shown in this way.
+fn is_useful(mode: Mode, action: Action) -> bool {
+    match action {
+        Action::Pause | Action::StepGeneration | Action::Checkpoint | Action::Stop => {
+            mode == Mode::Live
+        }
+        Action::Freeze => mode != Mode::Replay,
+        _ => true,
+    }
 }
 
 /// A key and what it does.

@@ -5,6 +5,7 @@ use maxq_lab::dashboard::{Effect, Input, Mode, Time, ViewId};
 use maxq_lab::hierarchy::Glyphs::Unicode;
 use maxq_lab::lab::Event;
 
+use super::common;
 use super::recorded::{Screen, foraging};
 
 fn screen() -> Screen {
@@ -212,5 +213,49 @@ fn control_characters_of_a_run_are_made_visible() {
         let frame = screen.0.app().frame();
         let mut symbols = frame.content.iter().flat_map(|cell| cell.symbol().chars());
         assert!(!symbols.any(char::is_control), "{view:?}");
+    }
+}
+
+/// The program's output, or what it says is wrong.
+fn frame(arguments: &[&str]) -> Result<String, String> {
+    let mut command = common::program();
+    command.arg("frame").arg(&foraging().folder).args(arguments);
+    let output = common::output(command.env("LC_ALL", "C.UTF-8").env_remove("NO_COLOR"));
+    match output.status.success() {
+        true => Ok(common::stdout(&output)),
+        false => Err(common::stderr(&output)),
+    }
+}
+
+#[test]
+fn a_frame_is_printed_without_a_terminal_and_the_same_each_time() {
+    let arguments = ["--size", "80x24", "--play", "2", "--generation", "3"];
+    let text = frame(&arguments).unwrap();
+    assert_eq!(text.lines().count(), 24);
+    assert!(
+        text.contains("generation 3") && text.contains("PAST of 6"),
+        "{text}"
+    );
+    assert_eq!(frame(&arguments).unwrap(), text);
+    let keyed = ["--size", "80x24", "--keys", "4", "--format", "svg"];
+    let svg = frame(&keyed).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("Fitness"), "{svg}");
+    let ascii = frame(&["--ascii", "--theme", "mono"]).unwrap();
+    assert!(ascii.is_ascii(), "{ascii}");
+}
+
+#[test]
+fn a_frame_that_cannot_be_made_is_an_error_with_what_is_allowed() {
+    for (arguments, allowed) in [
+        (["--size", "80"], "COLUMNSxROWS"),
+        (["--view", "arenas"], "population"),
+        (["--theme", "dusk"], "high-contrast"),
+        (["--keys", "pagedown"], "page-down"),
+        (["--play", "-1"], "0 to 3600"),
+        (["--format", "png"], "svg"),
+    ] {
+        let [option, value] = arguments;
+        let error = frame(&[&format!("{option}={value}")]).unwrap_err();
+        assert!(error.contains(value) && error.contains(allowed), "{error}");
     }
 }

@@ -19,7 +19,7 @@ use super::common;
 pub struct Recorded {
     pub bench: &'static dyn Bench,
     pub events: Vec<Event>,
-    folder: PathBuf,
+    pub folder: PathBuf,
     _parent: TempDir,
 }
 

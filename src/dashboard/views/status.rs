@@ -128,7 +128,7 @@ fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
             let text = String::from("generation limit");
             facts.push(("ended", text, Paint::Notice));
         }
-        None if desk.mode == Mode::Live => {
+        None if desk.mode != Mode::Replay => {
             let rate = desk.pace.steps_per_second();
             let rate = rate.map_or(String::from("?"), |rate| thousands(rate as u64));
             facts.push(("speed", format!("{rate} steps/s"), Paint::Text));
