@@ -165,6 +165,8 @@ impl<W: World> Work<W> {
             let (record, state) = (Box::new(record), Arc::clone(evolution.state()));
             let message = Message::Generation(record.clone(), state);
             recorder.send(message).map_err(|_| Stopped)?;
+            // Before the event: who hears of a generation can look at its individuals.
+            controls.set_latest(evolution.state());
             controls.tell(Event::Generation(record));
             controls.generation_over();
         }
