@@ -40,9 +40,6 @@ pub(super) struct Args {
     #[arg(long, value_name = "N")]
     generations: Option<u64>,
 
-    #[command(flatten)]
-    how: How,
-
     /// The run folder [default: runs/SCENARIO-seedN].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -50,6 +47,9 @@ pub(super) struct Args {
     /// Replace the run in the folder, if there is one.
     #[arg(long)]
     force: bool,
+
+    #[command(flatten)]
+    how: How,
 }
 
 /// How a run is carried out, whatever it is.
