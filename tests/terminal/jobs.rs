@@ -70,6 +70,7 @@ fn in_the_background_evolution_goes_on_and_the_terminal_is_the_shells() {
     pty.press("p");
     pty.wait_for("PAUSED");
     pty.press("qy");
+    pty.wait_for("go on with: maxq-lab resume");
     pty.wait_given_back();
     place.assert_saved();
 }
@@ -100,7 +101,7 @@ fn stopped_by_force_and_continued_it_draws_everything_again() {
     pty.signal("STOP");
     let before = pty.bytes();
     pty.signal("CONT");
-    pty.wait("a whole frame", |pty| pty.bytes() > before + 2000);
+    pty.wait("a whole frame", |pty| pty.bytes() > before + 1000);
     pty.press("qy");
     pty.ended();
     pty.wait_given_back();

@@ -156,10 +156,11 @@ impl Pty {
 
     /// Gives the window another size.
     pub fn resize(&mut self, columns: u16, rows: u16) {
-        let master = self.master.as_ref().unwrap();
-        master.resize(size(columns, rows)).unwrap();
+        // Nothing that is drawn for the new size may meet a screen of the old one.
         let mut parser = self.shown.parser.lock().unwrap();
         parser.set_size(nonzero(rows), nonzero(columns));
+        let master = self.master.as_ref().unwrap();
+        master.resize(size(columns, rows)).unwrap();
     }
 
     /// From now on nobody reads what the program writes, or somebody does again.

@@ -8,13 +8,14 @@ use std::time::{Duration, Instant};
 
 use super::tty::{Tty, detach};
 
-/// Alternate screen, no cursor; pasted text is marked, so that it is not taken for keys.
-const ENTER: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m";
+/// Alternate screen, no cursor; pasted text is marked, so that it is not taken for keys. The
+/// pen is cleared first: the alternate screen gives back the pen that it found.
+const ENTER: &[u8] = b"\x1b[0m\x1b[?1049h\x1b[?25l\x1b[?2004h";
 /// Presses, wheel and drags of the mouse, in the form that has no limit of columns.
 const MOUSE: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
 /// Everything back, and the end of a frame that was cut off.
 const LEAVE: &[u8] =
-    b"\x1b[?2026l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[?2004l\x1b[0m\x1b[?25h\x1b[?1049l";
+    b"\x1b[?2026l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[?2004l\x1b[0m\x1b[?25h\x1b[?1049l\x1b[0m";
 
 /// Longest wait for a terminal that takes nothing, on entering and on leaving it.
 const PATIENCE: Duration = Duration::from_millis(500);
