@@ -32,6 +32,7 @@ const COMMANDS: &[&[&str]] = &[
     &["evaluate"],
     &["study"],
     &["study", "status"],
+    &["study", "watch"],
     &["study", "report"],
     &["study", "plan"],
     &["study", "slurm"],

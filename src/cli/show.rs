@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use signal_hook::consts::SIGHUP;
 
@@ -12,7 +13,7 @@ use crate::dashboard::keys::KeyMap;
 use crate::dashboard::look::Look;
 use crate::dashboard::session::{Exit, Session, Source};
 use crate::dashboard::terminal::{Terminal, is_terminal};
-use crate::dashboard::{App, Mode};
+use crate::dashboard::{App, Mode, RunsTable};
 use crate::lab::specimen::{Archive, Bench};
 
 /// How the dashboard looks.
@@ -89,17 +90,51 @@ impl Outfit {
         source: Source<'_>,
         signals: &Caught,
     ) -> Result<Exit, Failure> {
+        let mut terminal = self.terminal()?;
+        let session = self.session(what, folder, source, &mut terminal)?;
+        Ok(session.run(&signals.heard)?)
+    }
+
+    /// The terminal, taken for a dashboard.
+    pub(super) fn terminal(&self) -> Result<Terminal, Failure> {
+        let terminal = Terminal::open(self.mouse);
+        Ok(terminal.map_err(|error| format!("terminal: {error}"))?)
+    }
+
+    /// A dashboard over a run on a terminal.
+    pub(super) fn session<'s>(
+        &self,
+        what: &'static dyn Bench,
+        folder: &'s Path,
+        source: Source<'s>,
+        terminal: &'s mut Terminal,
+    ) -> Result<Session<'s>, Failure> {
         let (mode, controls) = match &source {
             Source::Live(live) => (Mode::Live, Some(live.controls().clone())),
             Source::Watched(_) => (Mode::Watch, None),
             Source::Recorded(_) => (Mode::Replay, None),
         };
         let name = folder.display().to_string();
-        let app = App::new(what, name, mode, self.look, self.keys);
+        let (look, keys) = (self.look.clone(), self.keys.clone());
+        let app = App::new(what, name, mode, look, keys);
         let archive = Archive::new(what, folder, controls);
-        let terminal = Terminal::open(self.mouse).map_err(|error| format!("terminal: {error}"))?;
         let session = Session::new(app, archive, source, folder, terminal, self.fps)?;
-        Ok(session.run(&signals.heard)?)
+        Ok(session)
+    }
+
+    /// A table of the runs of the study with this name.
+    pub(super) fn table(&self, name: String, folder: String) -> RunsTable {
+        RunsTable::new(name, folder, self.look.clone(), self.keys.clone())
+    }
+
+    /// Time between two frames.
+    pub(super) fn period(&self) -> Duration {
+        Duration::from_secs_f64(1.0 / self.fps)
+    }
+
+    /// Looks like this from now on.
+    pub(super) fn wear(&mut self, look: Look) {
+        self.look = look;
     }
 }
 

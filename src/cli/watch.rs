@@ -13,7 +13,7 @@ use crate::lab::specimen::bench;
 use crate::lab::{Life, Manifest, News, Watch};
 
 /// Time between two looks at the run folder.
-const INTERVAL: Duration = Duration::from_millis(250);
+pub(super) const INTERVAL: Duration = Duration::from_millis(250);
 
 /// Follow a run that another process computes.
 ///

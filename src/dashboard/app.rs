@@ -211,19 +211,10 @@ impl App {
         let keys = &self.desk.keys;
         match open {
             Overlay::Help { scroll } => {
-                let page = i32::from(self.desk.size.1 / 2);
-                let by = match keys.in_view(key, self.view) {
-                    Some(Action::Up) => -1,
-                    Some(Action::Down) => 1,
-                    Some(Action::PageUp) => -page,
-                    Some(Action::PageDown) => page,
-                    Some(Action::Top) => i32::MIN,
-                    _ => return Vec::new(),
-                };
-                let scroll = scroll.saturating_add_signed(i16::try_from(by).unwrap_or(i16::MIN));
+                let action = keys.in_view(key, self.view);
                 let most = overlay::help_lines(&self.desk, self.view, &self.lessons()).len();
-                let scroll = scroll.min(u16::try_from(most).unwrap_or(u16::MAX));
-                self.overlay = Some(Overlay::Help { scroll });
+                let scroll = overlay::scrolled(scroll, action, self.desk.size.1, most);
+                self.overlay = scroll.map(|scroll| Overlay::Help { scroll });
                 Vec::new()
             }
             Overlay::Export => match keys.in_scope(key, Scope::ExportMenu) {
@@ -258,6 +249,7 @@ impl App {
             Action::Export => self.overlay = Some(Overlay::Export),
             Action::Suspend => return vec![Effect::Suspend],
             Action::Redraw => return vec![Effect::Redraw],
+            Action::Back if self.view == ViewId::Overview => return vec![Effect::Back],
             Action::Back => self.view = ViewId::Overview,
             Action::Open if self.view == ViewId::Overview => self.view = desk.focus,
             Action::NextPanel => self.desk.focus = self.neighbour(1),
@@ -357,7 +349,7 @@ impl App {
         let (desk, area) = (&self.desk, buffer.area);
         buffer.set_style(area, desk.look.style(Paint::Text));
         if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
-            return too_small(desk, area, buffer);
+            return too_small(&desk.look, area, buffer);
         }
         header::draw(desk, self.view, area, buffer);
         match self.view {
@@ -404,7 +396,7 @@ impl App {
 }
 
 /// Between header and hint bar.
-fn body(area: Rect) -> Rect {
+pub(super) fn body(area: Rect) -> Rect {
     Rect {
         y: area.y + area.height.min(1),
         height: area.height.saturating_sub(2),
@@ -412,8 +404,9 @@ fn body(area: Rect) -> Rect {
     }
 }
 
-fn too_small(desk: &Desk, area: Rect, buffer: &mut Buffer) {
-    let style = desk.look.style(Paint::Notice);
+/// Says that there is not enough room to see anything.
+pub(super) fn too_small(look: &Look, area: Rect, buffer: &mut Buffer) {
+    let style = look.style(Paint::Notice);
     let (columns, rows) = SMALLEST;
     let lines = [
         String::from("too small"),

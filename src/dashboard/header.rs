@@ -4,8 +4,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use super::desk::{Activity, Desk, Mode};
-use super::keys::Action;
-use super::look::{Paint, fitted, one_line, put, width};
+use super::keys::{Action, KeyMap};
+use super::look::{Look, Paint, fitted, one_line, put, width};
 use super::views::ViewId;
 
 /// Actions that lead around the overview.
@@ -114,40 +114,55 @@ pub(super) fn hint_bar(
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let line = Rect {
-        y: area.bottom().saturating_sub(1),
-        height: area.height.min(1),
-        ..area
-    };
-    let look = &desk.look;
+    let line = last_line(area);
     if let Some(text) = desk.message() {
-        let text = fitted(&one_line(text), usize::from(line.width), look.signs);
-        put(buffer, line, (0, 0), &text, look.style(Paint::Notice));
-        return;
+        return put_message(&desk.look, text, line, buffer);
     }
     let order = match view {
         ViewId::Overview => [AROUND, COMMON, hints],
         _ => [hints, &[Action::Back], COMMON],
     };
-    let pairs = |actions: &[&[Action]]| {
-        let actions = actions.iter().flat_map(|actions| actions.iter());
-        let useful = actions.filter(|action| is_useful(desk.mode, **action));
-        let hints = useful.filter_map(|&action| desk.keys.hint(action));
-        hints.collect::<Vec<_>>()
-    };
-    let always = pairs(&[ALWAYS]);
+    let actions = order.into_iter().flatten().copied();
+    let useful = actions.filter(|action| is_useful(desk.mode, *action));
+    put_hints(&desk.look, &desk.keys, useful, line, buffer);
+}
+
+/// The last line of an area.
+pub(super) fn last_line(area: Rect) -> Rect {
+    Rect {
+        y: area.bottom().saturating_sub(1),
+        height: area.height.min(1),
+        ..area
+    }
+}
+
+/// Draws a message in the place of hints.
+pub(super) fn put_message(look: &Look, text: &str, line: Rect, buffer: &mut Buffer) {
+    let text = fitted(&one_line(text), usize::from(line.width), look.signs);
+    put(buffer, line, (0, 0), &text, look.style(Paint::Notice));
+}
+
+/// Draws what keys do, as many as there is room for; help and the way out always.
+pub(super) fn put_hints(
+    look: &Look,
+    keys: &KeyMap,
+    actions: impl Iterator<Item = Action>,
+    line: Rect,
+    buffer: &mut Buffer,
+) {
+    let always: Vec<_> = ALWAYS.iter().filter_map(|&a| keys.hint(a)).collect();
     let right: u16 = always.iter().map(columns).sum();
     let right = line.width.saturating_sub(right);
     let mut column = 0;
-    for pair in pairs(&order) {
+    for pair in actions.filter_map(|action| keys.hint(action)) {
         if column + columns(&pair) > right {
             break;
         }
-        column = put_hint(desk, line, column, &pair, buffer);
+        column = put_hint(look, line, column, &pair, buffer);
     }
     let mut column = right;
     for pair in &always {
-        column = put_hint(desk, line, column, pair, buffer);
+        column = put_hint(look, line, column, pair, buffer);
     }
 }
 
@@ -170,8 +185,7 @@ fn columns((key, hint): &Hint) -> u16 {
     u16::try_from(width(key) + width(hint) + 3).unwrap_or(u16::MAX)
 }
 
-fn put_hint(desk: &Desk, line: Rect, column: u16, (key, hint): &Hint, buffer: &mut Buffer) -> u16 {
-    let look = &desk.look;
+fn put_hint(look: &Look, line: Rect, column: u16, (key, hint): &Hint, buffer: &mut Buffer) -> u16 {
     let column = put(buffer, line, (column, 0), key, look.style(Paint::Key));
     put(buffer, line, (column + 1, 0), hint, look.style(Paint::Dim)) + 2
 }

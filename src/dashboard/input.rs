@@ -47,6 +47,8 @@ pub enum Effect {
     Stop,
     /// Save and end the run if there is one, and leave.
     Quit,
+    /// Go back to where the run was opened from, if it was opened from somewhere.
+    Back,
     /// Leave, and let the run go on without a terminal.
     Detach,
     /// Put the program into the background of its shell.

@@ -17,6 +17,7 @@
 //! | `keys` | actions, keys, and which key does what: one list for input, hints and help |
 //! | `look` | themes, signs, lines of text, the canvas that arenas are drawn on |
 //! | `views` | one file a view; a view in a corner of the overview is a panel |
+//! | `runs` | the table of a study's runs, each of which can be opened |
 //! | `export` | a frame as text, ANSI or SVG |
 //! | [`terminal`] | the terminal's life: taken, lent to the shell, given back |
 //! | [`session`] | who drives an [`App`] on a terminal: events, keys, signals, frames |
@@ -36,6 +37,7 @@ mod model;
 mod overlay;
 mod pace;
 mod panel;
+mod runs;
 mod scene;
 pub mod session;
 mod sight;
@@ -51,6 +53,7 @@ pub use desk::{Chosen, Desk, Mode, Time};
 pub use export::{FrameFormat, render};
 pub use input::{Effect, Export, Input};
 pub use model::{Model, Progress};
+pub use runs::{RunRow, RunsEffect, RunsTable, Standing};
 pub use stage::{SPEEDS, Stage, Subject};
 pub use still::Still;
 pub use views::ViewId;

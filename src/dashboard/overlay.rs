@@ -6,8 +6,8 @@ use ratatui::widgets::{Clear, Widget};
 
 use super::desk::Desk;
 use super::input::Effect;
-use super::keys::{Action, Scope};
-use super::look::{Paint, fitted, put, width};
+use super::keys::{Action, KeyMap, Scope};
+use super::look::{Look, Paint, fitted, put, width};
 use super::panel::panel;
 use super::views::ViewId;
 
@@ -61,7 +61,7 @@ impl Question {
 }
 
 /// A line of an overlay: a key or nothing, and a text.
-type Line = (String, String, Paint);
+pub(super) type Line = (String, String, Paint);
 
 /// Draws what is open.
 pub(super) fn draw(
@@ -75,12 +75,13 @@ pub(super) fn draw(
     match open {
         Overlay::Help { scroll } => {
             let lines = help_lines(desk, view, lessons);
-            window(desk, ("Help", view.title()), &lines, *scroll, area, buffer);
+            let titles = ("Help", view.title());
+            window(&desk.look, titles, &lines, *scroll, area, buffer);
         }
         Overlay::Export => {
             let lines = of_scope(desk, Scope::ExportMenu);
             window(
-                desk,
+                &desk.look,
                 ("Export", "any other key: nothing"),
                 &lines,
                 0,
@@ -90,30 +91,48 @@ pub(super) fn draw(
         }
         Overlay::Question(question) => {
             let mut lines = vec![plain(question.text())];
-            lines.extend(question.answers().iter().map(|&action| line(desk, action)));
-            window(desk, ("Question", ""), &lines, 0, area, buffer);
+            let answers = question.answers().iter();
+            lines.extend(answers.map(|&action| line(&desk.keys, action)));
+            window(&desk.look, ("Question", ""), &lines, 0, area, buffer);
         }
     }
 }
 
-fn plain(text: &str) -> Line {
+/// A text without a key.
+pub(super) fn plain(text: &str) -> Line {
     (String::new(), text.to_owned(), Paint::Text)
 }
 
-fn line(desk: &Desk, action: Action) -> Line {
-    let keys: Vec<_> = desk
-        .keys
-        .keys(action)
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+/// An action and its keys.
+pub(super) fn line(keys: &KeyMap, action: Action) -> Line {
+    let keys: Vec<_> = keys.keys(action).iter().map(ToString::to_string).collect();
     let description = action.description().trim_end_matches('.');
     (keys.join(" "), description.to_owned(), Paint::Text)
 }
 
 fn of_scope(desk: &Desk, scope: Scope) -> Vec<Line> {
     let actions = Action::ALL.iter().filter(|action| action.scope() == scope);
-    actions.map(|&action| line(desk, action)).collect()
+    actions.map(|&action| line(&desk.keys, action)).collect()
+}
+
+/// Where help of some lines has scrolled to after an action; `None` where that closes it.
+pub(super) fn scrolled(
+    scroll: u16,
+    action: Option<Action>,
+    rows: u16,
+    lines: usize,
+) -> Option<u16> {
+    let page = i16::try_from(rows / 2).unwrap_or(i16::MAX);
+    let by = match action? {
+        Action::Up => -1,
+        Action::Down => 1,
+        Action::PageUp => -page,
+        Action::PageDown => page,
+        Action::Top => i16::MIN,
+        _ => return None,
+    };
+    let most = u16::try_from(lines).unwrap_or(u16::MAX);
+    Some(scroll.saturating_add_signed(by).min(most))
 }
 
 /// What there is to see, and all keys that do something there.
@@ -134,7 +153,7 @@ pub(super) fn help_lines(desk: &Desk, view: ViewId, lessons: &[(&str, &str)]) ->
     ];
     for (title, counts) in groups {
         let actions = Action::ALL.iter().filter(|action| counts(action.scope()));
-        let of_group: Vec<_> = actions.map(|&action| line(desk, action)).collect();
+        let of_group: Vec<_> = actions.map(|&action| line(&desk.keys, action)).collect();
         if !of_group.is_empty() {
             lines.push((String::new(), title.to_owned(), Paint::Title));
             lines.extend(of_group);
@@ -146,15 +165,14 @@ pub(super) fn help_lines(desk: &Desk, view: ViewId, lessons: &[(&str, &str)]) ->
 }
 
 /// Draws lines in a window in the middle of the screen.
-fn window(
-    desk: &Desk,
+pub(super) fn window(
+    look: &Look,
     titles: (&str, &str),
     lines: &[Line],
     scroll: u16,
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let look = &desk.look;
     let keys = lines
         .iter()
         .map(|(keys, ..)| width(keys))

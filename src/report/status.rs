@@ -1,12 +1,12 @@
 //! How far the runs of a study are, read from their folders at any time.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::single::{SingleError, fresh, summary};
 use super::study::{RunId, Study};
-use crate::lab::{Event, Life, Recording};
+use crate::lab::{Event, Life, Recording, RunError};
 
 /// How far a run is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -132,13 +132,30 @@ fn look(status: &mut RunStatus) -> Result<(), String> {
     for event in &recording.events {
         if let Event::Generation(record) = event {
             status.generations = record.generation;
-            status.best_steps.extend(record.mean_trial_steps(1));
         }
     }
+    status.best_steps = best_steps(&recording.events);
     status.stage = match recording.life {
         Life::Computing => Stage::Running,
         Life::Over => Stage::Evolved,
         Life::Absent | Life::Silent | Life::Stopped => Stage::Interrupted,
     };
     Ok(())
+}
+
+/// Mean time steps of a scored trial of the best individual of the run in a folder,
+/// generation by generation so far.
+///
+/// # Errors
+/// When the folder holds no run, or its log cannot be read.
+pub fn course(folder: &Path) -> Result<Vec<f64>, RunError> {
+    Recording::read(folder).map(|recording| best_steps(&recording.events))
+}
+
+fn best_steps(events: &[Event]) -> Vec<f64> {
+    let steps = events.iter().filter_map(|event| match event {
+        Event::Generation(record) => record.mean_trial_steps(1),
+        _ => None,
+    });
+    steps.collect()
 }

@@ -45,12 +45,17 @@ fn with_styles(frame: &Buffer) -> String {
 
 #[track_caller]
 pub fn assert_looks(name: &str, screen: &Screen) {
+    assert_frame(name, &screen.0.app().frame());
+}
+
+#[track_caller]
+pub fn assert_frame(name: &str, frame: &Buffer) {
     insta::with_settings!({
         snapshot_path => "../../snapshots",
         prepend_module_to_snapshot => false,
         omit_expression => true,
     }, {
-        insta::assert_snapshot!(format!("frame_{name}"), with_styles(&screen.0.app().frame()));
+        insta::assert_snapshot!(format!("frame_{name}"), with_styles(frame));
     });
 }
 

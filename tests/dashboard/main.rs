@@ -16,3 +16,4 @@ mod apart;
 mod behaviour;
 mod frames;
 mod recorded;
+mod runs;

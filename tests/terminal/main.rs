@@ -17,6 +17,7 @@ mod panics;
 mod pty;
 mod signals;
 mod storms;
+mod studies;
 
 use std::fs;
 use std::path::{Path, PathBuf};

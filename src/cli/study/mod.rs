@@ -3,6 +3,7 @@
 mod elsewhere;
 mod runs;
 mod status;
+mod watch;
 
 use std::path::PathBuf;
 
@@ -35,6 +36,7 @@ Examples:
   maxq-lab study thesis --out studies/thesis               the study of the thesis's claims
   maxq-lab study environment-1 environment-2 --seeds 1..10 --arms evolved,flat --out mine
   maxq-lab study status studies/thesis                     at any time
+  maxq-lab study watch studies/thesis                      live, as a table of runs to open
   maxq-lab study report studies/thesis                     what comes out"
 )]
 pub(super) struct Args {
@@ -113,6 +115,7 @@ impl What {
 #[derive(Debug, Subcommand)]
 enum Command {
     Status(status::StatusArgs),
+    Watch(watch::WatchArgs),
     Report(status::ReportArgs),
     Plan(elsewhere::PlanArgs),
     Slurm(elsewhere::SlurmArgs),
@@ -123,6 +126,7 @@ enum Command {
 pub(super) fn main(args: &Args) -> Done {
     match &args.command {
         Some(Command::Status(args)) => status::show(args),
+        Some(Command::Watch(args)) => watch::main(args),
         Some(Command::Report(args)) => status::report(args),
         Some(Command::Plan(args)) => elsewhere::plan(args),
         Some(Command::Slurm(args)) => elsewhere::slurm(args),

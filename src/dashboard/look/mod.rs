@@ -4,6 +4,7 @@ mod canvas;
 mod chart;
 mod paint;
 mod signs;
+mod spark;
 mod text;
 mod theme;
 
@@ -11,6 +12,7 @@ pub use canvas::{Canvas, Layer};
 pub use chart::{Chart, Curve};
 pub use paint::Paint;
 pub use signs::Signs;
+pub use spark::sparkline;
 pub use text::{fitted, one_line, put, width};
 pub use theme::{StyleError, Theme};
 

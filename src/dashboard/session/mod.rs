@@ -5,6 +5,7 @@
 //! is drawn when something has changed and the terminal has taken the last one.
 
 mod loader;
+mod runs;
 mod save;
 mod source;
 
@@ -16,6 +17,7 @@ use crossbeam_channel::{Receiver, after, select};
 use crossterm::event::{Event as Typed, KeyCode, KeyEvent, KeyModifiers, MouseEventKind};
 use signal_hook::consts::SIGHUP;
 
+pub use runs::{RunsExit, RunsSession};
 pub use source::{Live, Source};
 
 use super::keys::Key;
@@ -49,8 +51,10 @@ pub enum Exit {
 pub struct Session<'s> {
     app: App,
     loader: Loader,
-    terminal: Terminal,
+    terminal: &'s mut Terminal,
     source: Source<'s>,
+    /// Whether it was opened from somewhere that a person may want to go back to.
+    within: bool,
     /// Time between two frames.
     period: Duration,
     /// The run folder.
@@ -81,7 +85,7 @@ impl<'s> Session<'s> {
         archive: Archive,
         source: Source<'s>,
         folder: &'s Path,
-        terminal: Terminal,
+        terminal: &'s mut Terminal,
         frames_per_second: f64,
     ) -> io::Result<Self> {
         Ok(Self {
@@ -89,6 +93,7 @@ impl<'s> Session<'s> {
             loader: Loader::start(archive)?,
             terminal,
             source,
+            within: false,
             period: Duration::from_secs_f64(1.0 / frames_per_second.clamp(0.1, 60.0)),
             folder,
             ticked: Instant::now(),
@@ -96,8 +101,15 @@ impl<'s> Session<'s> {
         })
     }
 
-    /// Shows the run until somebody or something ends it. The terminal is given back then,
-    /// and the run is as it was left.
+    /// A session that was opened from somewhere: going back from the overview leaves it.
+    #[must_use]
+    pub fn within(mut self) -> Self {
+        self.within = true;
+        self
+    }
+
+    /// Shows the run until somebody or something ends it. The run is as it was left then.
+    /// The screen is kept: dropping the terminal gives it back.
     ///
     /// # Errors
     /// When a frame cannot be made.
@@ -280,6 +292,8 @@ impl<'s> Session<'s> {
         for effect in effects {
             match effect {
                 Effect::Quit => return Some(Exit::Left),
+                Effect::Back if self.within => return Some(Exit::Left),
+                Effect::Back => {}
                 Effect::Detach => return Some(Exit::Detached),
                 Effect::Suspend => {
                     if !self.terminal.ask_to_suspend() {

@@ -1,0 +1,200 @@
+//! The table of a study's runs: how far each is, and which one to open.
+//!
+//! The table knows of runs what its rows say, and nothing of studies or folders: whoever
+//! drives it fills the rows and opens what a person has chosen. As the dashboard of a
+//! run it is a state, [`RunsTable::key`] and [`RunsTable::tell`], and a pure function that draws.
+
+mod columns;
+mod draw;
+mod row;
+
+use std::collections::BTreeMap;
+
+use ratatui::Frame;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+pub use row::{RunRow, Standing};
+
+use super::keys::{Action, Key, KeyMap};
+use super::look::Look;
+use super::overlay;
+use super::views::ViewId;
+use columns::Column;
+
+/// Something to be done by whoever drives the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunsEffect {
+    /// Open the run of this row, by its place in the rows that were told.
+    Open(usize),
+    /// Leave.
+    Leave,
+    /// Put the program into the background of its shell.
+    Suspend,
+    /// Forget what is on the terminal and draw everything again.
+    Redraw,
+}
+
+/// A table of runs.
+#[derive(Clone, Debug)]
+pub struct RunsTable {
+    name: String,
+    folder: String,
+    look: Look,
+    keys: KeyMap,
+    size: (u16, u16),
+    /// The runs in the order in which they were told; `None` before that.
+    rows: Option<Vec<RunRow>>,
+    /// Smallest and largest value of the courses of a scenario, so that the sparklines of
+    /// its runs can be compared.
+    ranges: BTreeMap<String, [f64; 2]>,
+    /// What the rows are sorted by; else they are in the order in which they were told.
+    by: Option<Column>,
+    reversed: bool,
+    /// Place of the selected run in the rows that were told.
+    selected: usize,
+    /// Lines of help above the screen, while it is open.
+    help: Option<u16>,
+    /// What was said since the last key.
+    message: Option<String>,
+}
+
+impl RunsTable {
+    /// A table of the runs of the study with this name; `folder` is its folder, for people.
+    #[must_use]
+    pub fn new(name: String, folder: String, look: Look, keys: KeyMap) -> Self {
+        Self {
+            name,
+            folder,
+            look,
+            keys,
+            size: (80, 24),
+            rows: None,
+            ranges: BTreeMap::new(),
+            by: None,
+            reversed: false,
+            selected: 0,
+            help: None,
+            message: None,
+        }
+    }
+
+    /// Themes and signs in use.
+    #[must_use]
+    pub fn look(&self) -> &Look {
+        &self.look
+    }
+
+    /// The terminal has so many columns and rows.
+    pub fn resize(&mut self, columns: u16, rows: u16) {
+        self.size = (columns, rows);
+    }
+
+    /// Says something to the person, until the next key.
+    pub fn say(&mut self, text: impl Into<String>) {
+        self.message = Some(text.into());
+    }
+
+    /// The runs as they are now, always in the same order. Whether anything has changed.
+    pub fn tell(&mut self, rows: Vec<RunRow>) -> bool {
+        if self.rows.as_ref() == Some(&rows) {
+            return false;
+        }
+        self.ranges.clear();
+        for row in &rows {
+            let known = [f64::INFINITY, f64::NEG_INFINITY];
+            let range = self.ranges.entry(row.scenario.clone()).or_insert(known);
+            for steps in &row.course {
+                *range = [range[0].min(*steps), range[1].max(*steps)];
+            }
+        }
+        self.selected = self.selected.min(rows.len().saturating_sub(1));
+        self.rows = Some(rows);
+        true
+    }
+
+    /// Takes in a key; returns what is to be done about it.
+    pub fn key(&mut self, key: Key) -> Option<RunsEffect> {
+        self.message = None;
+        // The table's keys are those of the table of a population.
+        let action = self.keys.in_view(key, ViewId::Population);
+        if let Some(scroll) = self.help {
+            let lines = self.help_lines().len();
+            self.help = overlay::scrolled(scroll, action, self.size.1, lines);
+            return None;
+        }
+        let page = (self.size.1 / 2).max(1) as isize;
+        match action? {
+            Action::Up => self.select(-1),
+            Action::Down => self.select(1),
+            Action::PageUp => self.select(-page),
+            Action::PageDown => self.select(page),
+            Action::Top => self.select(isize::MIN),
+            Action::Bottom => self.select(isize::MAX),
+            Action::Sort => self.by = Column::next(self.by),
+            Action::Reverse => self.reversed = !self.reversed,
+            Action::Open => return self.open(),
+            Action::Help => self.help = Some(0),
+            Action::Theme => {
+                self.look.next_theme();
+                self.say(format!("theme: {}", self.look.theme()));
+            }
+            Action::Quit => return Some(RunsEffect::Leave),
+            Action::Suspend => return Some(RunsEffect::Suspend),
+            Action::Redraw => return Some(RunsEffect::Redraw),
+            _ => {}
+        }
+        None
+    }
+
+    fn open(&mut self) -> Option<RunsEffect> {
+        let row = self.rows().get(self.selected)?;
+        match (row.standing, &row.trouble) {
+            (Standing::Waiting, _) => self.say("this run has not begun"),
+            (Standing::Unreadable, Some(trouble)) => self.say(trouble.clone()),
+            _ => return Some(RunsEffect::Open(self.selected)),
+        }
+        None
+    }
+
+    fn rows(&self) -> &[RunRow] {
+        self.rows.as_deref().unwrap_or_default()
+    }
+
+    /// The places of the rows, in the order in which they are shown.
+    fn sorted(&self) -> Vec<usize> {
+        let rows = self.rows();
+        let mut places: Vec<_> = (0..rows.len()).collect();
+        if let Some(column) = self.by {
+            places.sort_by(|&one, &other| column.compare(&rows[one], &rows[other]));
+        }
+        if self.reversed {
+            places.reverse();
+        }
+        places
+    }
+
+    /// Selects the run some lines further down.
+    fn select(&mut self, by: isize) {
+        let sorted = self.sorted();
+        let here = sorted.iter().position(|&place| place == self.selected);
+        let next = here.unwrap_or(0).saturating_add_signed(by);
+        if let Some(&place) = sorted.get(next).or(sorted.last()) {
+            self.selected = place;
+        }
+    }
+
+    /// The frame as it would be on a terminal of the present size.
+    #[must_use]
+    pub fn frame(&self) -> Buffer {
+        let (width, height) = self.size;
+        let mut buffer = Buffer::empty(Rect::new(0, 0, width, height));
+        self.draw_on(&mut buffer);
+        buffer
+    }
+
+    /// Draws everything.
+    pub fn draw(&self, frame: &mut Frame<'_>) {
+        self.draw_on(frame.buffer_mut());
+    }
+}

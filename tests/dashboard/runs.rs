@@ -1,0 +1,172 @@
+//! The table of a study's runs: what stands in it, what its keys do, at every size.
+
+use maxq_lab::dashboard::keys::{Action, Key, KeyMap};
+use maxq_lab::dashboard::look::{Look, Signs, Theme};
+use maxq_lab::dashboard::{FrameFormat, RunRow, RunsEffect, RunsTable, Standing, render};
+use maxq_lab::hierarchy::Glyphs;
+use proptest::prelude::*;
+
+use super::frames::assert_frame;
+
+fn run(place: usize, standing: Standing, generations: u64) -> RunRow {
+    let arms = ["evolved", "random_selection", "hand_designed"];
+    let scenario = 1 + place / arms.len() % 2;
+    let start = 900.0 + 10.0 * place as f64;
+    let course = (0..generations).map(|n| 300.0 + start / (1.0 + n as f64 / 4.0));
+    RunRow {
+        scenario: format!("environment-{scenario}"),
+        arm: String::from(arms[place % arms.len()]),
+        seed: 1 + (place / (2 * arms.len())) as u64,
+        standing,
+        generations,
+        course: course.collect(),
+        fresh: (standing == Standing::Done).then_some(402.25 + place as f64),
+        trouble: (standing == Standing::Unreadable).then(|| String::from("run.json: \u{1b}[2J")),
+    }
+}
+
+/// A study under way: some runs of every standing, and many that wait.
+fn rows() -> Vec<RunRow> {
+    let begun = [
+        (Standing::Done, 40),
+        (Standing::Done, 60),
+        (Standing::Evolved, 12),
+        (Standing::Running, 9),
+        (Standing::BrokenOff, 3),
+        (Standing::Unreadable, 0),
+        (Standing::Running, 0),
+    ];
+    let waiting = [(Standing::Waiting, 0); 40];
+    let all = begun.into_iter().chain(waiting).enumerate();
+    all.map(|(place, (standing, n))| run(place, standing, n))
+        .collect()
+}
+
+fn blank(theme: &str, glyphs: Glyphs, (columns, rows): (u16, u16)) -> RunsTable {
+    let look = Look::new(Theme::all(), theme, Signs::of(glyphs));
+    let (name, folder) = (String::from("thesis"), String::from("studies/thesis"));
+    let mut table = RunsTable::new(name, folder, look, KeyMap::default());
+    table.resize(columns, rows);
+    table
+}
+
+fn table(theme: &str, glyphs: Glyphs, size: (u16, u16)) -> RunsTable {
+    let mut table = blank(theme, glyphs, size);
+    table.tell(rows());
+    table
+}
+
+fn press(table: &mut RunsTable, keys: &str) -> Option<RunsEffect> {
+    let keys = keys.split_whitespace().map(|key| key.parse().unwrap());
+    keys.fold(None, |_, key| table.key(key))
+}
+
+fn text(table: &RunsTable) -> String {
+    render(&table.frame(), FrameFormat::Text)
+}
+
+#[test]
+fn the_table() {
+    for (name, theme, glyphs, size, keys) in [
+        ("runs_80x24_dark", "dark", Glyphs::Unicode, (80, 24), "j"),
+        ("runs_120x40_dark", "dark", Glyphs::Unicode, (120, 40), ""),
+        ("runs_80x24_ascii", "mono", Glyphs::Ascii, (80, 24), "s G"),
+        ("runs_40x12_mono", "mono", Glyphs::Unicode, (40, 12), "j j"),
+        ("runs_help_80x24", "dark", Glyphs::Unicode, (80, 24), "?"),
+    ] {
+        let mut table = table(theme, glyphs, size);
+        press(&mut table, keys);
+        assert_frame(name, &table.frame());
+    }
+}
+
+/// Every run is opened as the one that was pointed at, whatever the table is sorted by, and
+/// only if there is something to see.
+#[test]
+fn the_run_that_is_pointed_at_is_opened() {
+    let mut table = table("dark", Glyphs::Unicode, (80, 24));
+    assert_eq!(press(&mut table, "enter"), Some(RunsEffect::Open(0)));
+    assert_eq!(press(&mut table, "j j j enter"), Some(RunsEffect::Open(3)));
+    // Sorted by state: running ones first; the selected run stays selected.
+    assert_eq!(press(&mut table, "s enter"), Some(RunsEffect::Open(3)));
+    assert_eq!(press(&mut table, "j enter"), Some(RunsEffect::Open(6)));
+    assert_eq!(press(&mut table, "G enter"), None);
+    assert!(text(&table).contains("this run has not begun"));
+    // Turned round, what was last is first.
+    assert_eq!(press(&mut table, "S end enter"), Some(RunsEffect::Open(3)));
+    assert_eq!(press(&mut table, "q"), Some(RunsEffect::Leave));
+}
+
+/// What is wrong with a run is said, not opened; nothing of it steers the terminal.
+#[test]
+fn what_cannot_be_read_says_why() {
+    let mut table = table("dark", Glyphs::Unicode, (80, 24));
+    assert_eq!(press(&mut table, "j j j j j enter"), None);
+    assert!(text(&table).contains("run.json: \\u{1b}[2J"));
+    press(&mut table, "k");
+    assert!(!text(&table).contains("run.json"));
+}
+
+/// Only news make a new frame: a study that waits sends nothing over the line.
+#[test]
+fn the_same_rows_again_are_no_news() {
+    let mut table = blank("dark", Glyphs::Unicode, (80, 24));
+    assert!(text(&table).contains("being read"));
+    assert!(table.tell(rows()));
+    assert!(!table.tell(rows()));
+    let mut changed = rows();
+    changed[3].generations += 1;
+    assert!(table.tell(changed));
+}
+
+fn value() -> impl Strategy<Value = f64> {
+    prop_oneof![4 => 0.0..2000.0, 1 => any::<f64>()]
+}
+
+fn any_row() -> impl Strategy<Value = RunRow> {
+    let texts = (any::<String>(), any::<String>());
+    let standing = prop::sample::select(Standing::ALL.to_vec());
+    let course = prop::collection::vec(value(), 0..90);
+    let fresh = prop::option::of(value());
+    let numbers = (any::<u64>(), any::<u64>());
+    (texts, standing, course, fresh, numbers).prop_map(
+        |((scenario, arm), standing, course, fresh, (seed, generations))| RunRow {
+            scenario,
+            trouble: Some(arm.clone()),
+            arm,
+            seed,
+            standing,
+            generations,
+            course,
+            fresh,
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn any_rows_keys_and_sizes(
+        rows in prop::collection::vec(any_row(), 0..20),
+        fewer in 0..20_usize,
+        keys in prop::collection::vec(prop::sample::select(Action::ALL.to_vec()), 0..30),
+        size in (0..250_u16, 0..90_u16),
+        ascii in any::<bool>(),
+    ) {
+        let glyphs = if ascii { Glyphs::Ascii } else { Glyphs::Unicode };
+        let mut table = blank("dark", glyphs, size);
+        table.tell(rows.clone());
+        for (index, action) in keys.iter().enumerate() {
+            let key: Key = action.default_keys()[0].parse().unwrap();
+            if let Some(RunsEffect::Open(place)) = table.key(key) {
+                prop_assert!(place < rows.len());
+            }
+            if index == 9 {
+                table.tell(rows[..fewer.min(rows.len())].to_vec());
+            }
+            let frame = table.frame();
+            let mut symbols = frame.content.iter().flat_map(|cell| cell.symbol().chars());
+            prop_assert!(!symbols.any(char::is_control));
+        }
+    }
+}
