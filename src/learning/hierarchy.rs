@@ -93,7 +93,8 @@ impl CompositeValues {
                 }
                 for block in vector.chunks_exact(layout.width) {
                     parameters.extend_from_slice(block);
-                    parameters.resize(parameters.len().next_multiple_of(layout.stride()), 0.0);
+                    let padding = layout.stride() - layout.width;
+                    parameters.resize(parameters.len() + padding, 0.0);
                 }
             }
         }

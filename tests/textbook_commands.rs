@@ -1,0 +1,104 @@
+//! The textbook worlds go through the commands that all worlds go through, and a run of
+//! taxi that was broken off ends with the same bytes as one that was not.
+//!
+//! Why it matters: taxi is the world whose subtasks look at different inputs and whose
+//! primitive subtasks each individual learns; what holds for foraging is not enough.
+
+#![allow(clippy::unwrap_used)]
+
+use std::process::{Command, Output};
+
+fn maxq_lab(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_maxq-lab"));
+    command.args(arguments).output().unwrap()
+}
+
+fn succeeds(arguments: &[&str]) -> String {
+    let output = maxq_lab(arguments);
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{arguments:?}: {errors}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn fails(arguments: &[&str]) -> String {
+    let output = maxq_lab(arguments);
+    assert!(!output.status.success(), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn learning_prints_the_values_of_the_figure() {
+    let text = succeeds(&["learn", "cliff", "--algorithm", "q-learning"]);
+    assert!(text.contains("  -14.00  -13.00  -12.00"), "{text}");
+    let taxi = [
+        "learn",
+        "taxi",
+        "--algorithm",
+        "maxq-q",
+        "--show",
+        "from R to B",
+    ];
+    // Second row, first column: the state of Figure 2.6 is worth 10.
+    let text = succeeds(&taxi);
+    assert!(text.contains("\n   10.00    9.00"), "{text}");
+    let json = succeeds(&["learn", "cliff", "--algorithm", "td0", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["values"][0]["exact"][3][0], -13.0);
+}
+
+#[test]
+fn what_a_world_does_not_have_is_an_error_that_says_so() {
+    let foraging = fails(&["learn", "smoke", "--algorithm", "q-learning"]);
+    assert!(foraging.contains("states cannot be counted"), "{foraging}");
+    let rbf = fails(&["learn", "taxi", "--algorithm", "q-learning-rbf"]);
+    assert!(rbf.contains("without RBF features"), "{rbf}");
+    let primitives = fails(&["primitives", "taxi"]);
+    assert!(primitives.contains("not trained"), "{primitives}");
+    let show = fails(&[
+        "learn",
+        "taxi",
+        "--algorithm",
+        "td0",
+        "--show",
+        "from R to X",
+    ]);
+    assert!(show.contains("from R to B"), "{show}");
+}
+
+/// Evolution, its run folder, and going on from it: primitive subtasks that each
+/// individual learns survive the checkpoint.
+#[test]
+fn taxi_evolves_and_resumes_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (whole, parts) = (path("whole"), path("parts"));
+    let short = [
+        "--seed",
+        "3",
+        "--headless",
+        "--set",
+        "evolution.trials_per_generation=8",
+        "--set",
+        "evolution.policy_samples=10",
+        "--generations",
+    ];
+    let run = |out: &str, generations: &str| {
+        succeeds(
+            &[
+                &["run", "taxi", "--out", out][..],
+                &short[..],
+                &[generations][..],
+            ]
+            .concat(),
+        );
+    };
+    run(&whole, "4");
+    run(&parts, "2");
+    succeeds(&["resume", &parts, "--headless", "--generations", "4"]);
+    let bytes = |run: &str, file: &str| std::fs::read(format!("{run}/{file}")).unwrap();
+    for file in ["checkpoint.json", "events.jsonl"] {
+        assert!(bytes(&whole, file) == bytes(&parts, file), "{file} differs");
+    }
+    let text = String::from_utf8(bytes(&whole, "checkpoint.json")).unwrap();
+    assert!(text.contains("\"subtask\":\"Putdown\""));
+}
