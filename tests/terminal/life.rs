@@ -50,7 +50,7 @@ fn the_dashboard_follows_the_size_of_the_window() {
     for (columns, rows) in [(80, 24), (200, 60), (120, 40)] {
         pty.resize(columns, rows);
         // The hints are on the last line, whatever it is.
-        let hints = |pty: &Pty| pty.screen().contains("halt");
+        let hints = |pty: &Pty| pty.screen().contains("q quit");
         pty.wait(&format!("{columns}x{rows}"), |pty| {
             hints(pty) && pty.screen().contains("RUNNING")
         });

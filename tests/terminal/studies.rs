@@ -1,15 +1,25 @@
 //! The table of a study's runs: opened, gone into, come back from, left.
 
+use std::path::Path;
 use std::process::{Child, Stdio};
 
-use crate::common::program as plain_program;
-use crate::pty::{Pty, program};
-use crate::wait_for_end;
+use maxq_lab::report::{Arm, Base, Plan, Study};
 
-/// A study of one run, done by another process.
-fn study(scenario: &str, folder: &str) -> Child {
+use crate::common::{SHORT, program as plain_program};
+use crate::pty::{Pty, program};
+use crate::{ENDLESS, wait_for_end};
+
+/// A study of one run with settings, done by another process.
+fn study(settings: &[&str], folder: &str) -> Child {
+    let settings = SHORT.iter().chain(settings).copied().map(String::from);
+    let arm = Arm {
+        settings: settings.collect(),
+        ..Arm::of(Base::Evolved)
+    };
+    let plan = Plan::of(&[String::from("smoke")], "1".parse().unwrap(), vec![arm]).unwrap();
+    Study::create(plan, Path::new(folder)).unwrap();
     let mut command = plain_program();
-    command.args(["study", scenario, "--seeds", "1", "--arms", "evolved"]);
+    command.args(["study", &format!("{folder}/study.json")]);
     command.args(["--headless", "--jobs", "1", "--out", folder]);
     command.stdout(Stdio::null()).stderr(Stdio::null());
     command.spawn().unwrap()
@@ -20,7 +30,7 @@ fn a_run_that_is_done_is_replayed_and_come_back_from() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("study");
     let folder = folder.to_str().unwrap();
-    assert!(study("smoke", folder).wait().unwrap().success());
+    assert!(study(&[], folder).wait().unwrap().success());
     let mut pty = Pty::start(120, 40, program(&["study", "watch", folder]));
     pty.wait_for("1 done");
     assert!(pty.is_taken());
@@ -43,10 +53,7 @@ fn a_run_that_goes_on_is_watched_until_it_is_broken_off() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("study");
     let folder = folder.to_str().unwrap();
-    let mut runs = study("environment-1", folder);
-    crate::wait_until("the study", || {
-        parent.path().join("study/study.json").exists()
-    });
+    let mut runs = study(ENDLESS, folder);
     let mut pty = Pty::start(120, 40, program(&["study", "watch", folder]));
     pty.wait_for("1 running");
     pty.press("\r");
