@@ -23,10 +23,15 @@ use std::time::{Duration, Instant};
 
 use common::{SHORT, output, program, stderr, stdout};
 
-/// A plan of six short runs, and of two that take a second or so if `long`.
+/// Many trials a generation.
+const LONG: [&str; 1] = ["evolution.trials_per_generation=400"];
+
+/// A plan of six short runs; or, if `long`, of two whose generations take some tenths of a
+/// second on a fast machine, so that a signal after the first finds them at work.
 fn plan_in(folder: &Path, long: bool) -> PathBuf {
-    let short: Vec<_> = SHORT.iter().map(|setting| format!("{setting:?}")).collect();
-    let settings = if long { String::new() } else { short.join(",") };
+    let settings = if long { &LONG[..] } else { SHORT };
+    let quoted: Vec<_> = settings.iter().map(|set| format!("{set:?}")).collect();
+    let settings = quoted.join(",");
     let arm =
         |base: &str| format!(r#"{{"name":"{base}","base":"{base}","settings":[{settings}]}}"#);
     let arms = match long {
