@@ -246,9 +246,10 @@ impl<'s> Session<'s> {
     fn act(&mut self, woken: Woken) -> Option<Exit> {
         match woken {
             Woken::Time | Woken::Drawn(Ok(())) => None,
-            Woken::Drawn(Err(_)) | Woken::Signal(SIGHUP) => Some(Exit::HungUp),
+            // No more keys come from a terminal that is gone.
+            Woken::Drawn(Err(_)) | Woken::Signal(SIGHUP) | Woken::Typed(None) => Some(Exit::HungUp),
             Woken::Signal(signal) => Some(Exit::Signal(signal)),
-            Woken::Typed(typed) => self.typed(typed),
+            Woken::Typed(Some(typed)) => self.typed(typed),
             Woken::Loaded(Loaded { generation, state }) => {
                 let effects = self.app.update(Input::Population { generation, state });
                 self.carry_out(effects)
@@ -266,8 +267,8 @@ impl<'s> Session<'s> {
     }
 
     /// Acts on a key and on all that were pressed since.
-    fn typed(&mut self, typed: Option<Typed>) -> Option<Exit> {
-        let mut typed = Some(typed?);
+    fn typed(&mut self, typed: Typed) -> Option<Exit> {
+        let mut typed = Some(typed);
         while let Some(event) = typed {
             if let Some(key) = key(&event) {
                 self.due = true;
