@@ -159,6 +159,24 @@ fn a_claim_on_two_environments_is_paired_by_seed_and_needs_both() {
     assert_eq!(found.tested.n, 20);
 }
 
+/// Without selection a seed leads to the same structures in every environment: held against
+/// each other these would never differ, and any difference would look like selection's work.
+#[test]
+fn claims_across_environments_hold_different_seeds_of_the_control_against_each_other() {
+    let parent = tempfile::tempdir().unwrap();
+    let study = study(parent.path());
+    let mut all = all(&study, [SEEDS, SEEDS, 0], [100.0; 3]);
+    for facts in &mut all {
+        if facts.run.arm != 0 && facts.run.seed <= 15 {
+            facts.winner.selectable[3].push(String::from("Avoid"));
+        }
+    }
+    let findings = Findings::from_facts(&study, &all);
+    let found = judged(&findings, "primitives-grow", "environment-1, environment-3");
+    // Environment 1 of seeds 29 and 30 stands against environment 3 of seeds 1 and 2.
+    assert_eq!((found.control.unwrap().shown, found.tested.shown), (2, 0));
+}
+
 #[test]
 fn arms_are_compared_by_fresh_trials_paired_by_seed() {
     let parent = tempfile::tempdir().unwrap();

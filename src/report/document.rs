@@ -64,7 +64,9 @@ fn claims(claims: &[Judged]) -> String {
          more than half of the seeds show it (the interval lies above one half) and more than under \
          the control (Fisher's exact test, p < 0.05); it *comes out by drift alone* if more than half \
          show it and the control's do too; it *does not hold* if fewer than half show it (the interval \
-         lies below), or fewer than the control's. {} verdicts: about one in twenty tests is \
+         lies below), or fewer than the control's. Across scenarios, runs of one seed are held against \
+         each other; of the control's, runs of different seeds, because without selection a seed leads \
+         to the same structures everywhere. {} verdicts: about one in twenty tests is \
          significant by chance.\n\n{}\n",
         claims.len(),
         table.markdown()

@@ -265,15 +265,34 @@ impl<'s> View<'s> {
 
     /// How many seeds of an arm show what is claimed.
     fn count(&self, claim: &Claim, here: &str, arm: usize) -> Count {
-        let seeds = self.study.plan.seeds.iter();
-        Count::of(seeds.filter_map(|seed| {
+        let seeds: Vec<_> = self.study.plan.seeds.iter().collect();
+        let across = matches!(claim.scope, Scope::Named(names) if names.len() > 1);
+        let drifts = self.study.plan.arms[arm].base == Base::RandomSelection;
+        Count::of(seeds.iter().enumerate().filter_map(|(place, &seed)| {
             let evidence = Evidence {
-                runs: self.by_scenario(seed, arm),
+                runs: match across && drifts {
+                    true => self.staggered(&seeds, place, arm),
+                    false => self.by_scenario(seed, arm),
+                },
                 designed: self.designed(seed),
                 here,
             };
             (claim.shows)(&evidence)
         }))
+    }
+
+    /// One run of each scenario, each of the next seed. Without selection a seed leads to
+    /// the same structures in every scenario, so that holding these against each other
+    /// would show no difference where chance makes one.
+    fn staggered(&self, seeds: &[u64], place: usize, arm: usize) -> BTreeMap<&'s str, &'s Facts> {
+        let scenarios = self.study.plan.scenarios.iter().enumerate();
+        let runs = scenarios.filter_map(|(shift, scenario)| {
+            let seed = seeds[(place + shift) % seeds.len()];
+            let of = self.by_scenario(seed, arm);
+            of.get_key_value(scenario.name.as_str())
+                .map(|(&name, &facts)| (name, facts))
+        });
+        runs.collect()
     }
 
     fn by_scenario(&self, seed: u64, arm: usize) -> BTreeMap<&'s str, &'s Facts> {
