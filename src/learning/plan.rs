@@ -96,6 +96,14 @@ impl Plan {
         &self.children[self.ends[list]..self.ends[list + 1]]
     }
 
+    /// Whether all these nodes are the same primitive subtask: then it does not matter
+    /// which is chosen.
+    pub(super) fn leads_to_one_skill(&self, nodes: &[usize]) -> bool {
+        let skill = |node: &usize| self.nodes[*node].skill;
+        let first = nodes.first().and_then(skill);
+        first.is_some() && nodes.iter().all(|node| skill(node) == first)
+    }
+
     /// Whether a subtask can act in a state type.
     pub(super) fn can_act(&self, node: usize, state_type: StateType) -> bool {
         match self.nodes[node].skill {

@@ -51,19 +51,28 @@ impl Softmax {
         if values.len() > LANES {
             return self.pick(values, &mut in_lanes(values), temperature, draw);
         }
-        let mut weights = [f32::NEG_INFINITY; LANES];
-        for (weight, value) in weights.iter_mut().zip(values) {
-            *weight = *value;
-        }
-        self.pick(values, &mut weights, temperature, draw)
+        self.pick(values, &mut few_in_lanes(values), temperature, draw)
     }
 
     /// Writes the probability with which each of `values` is chosen, and says by which
     /// rule.
     pub fn probabilities(&self, values: &[f32], temperature: f32, out: &mut [f32]) -> Rule {
+        match values.len() > LANES {
+            true => self.weigh(values, &mut in_lanes(values), temperature, out),
+            false => self.weigh(values, &mut few_in_lanes(values), temperature, out),
+        }
+    }
+
+    /// Writes the probabilities of `values`, which `weights` holds in whole lanes.
+    fn weigh(
+        &self,
+        values: &[f32],
+        weights: &mut [f32],
+        temperature: f32,
+        out: &mut [f32],
+    ) -> Rule {
         let count = values.len() as f32;
-        let mut weights = in_lanes(values);
-        boltzmann(&mut weights, temperature);
+        boltzmann(weights, temperature);
         let sum = weights.iter().sum();
         if self.is_greedy(sum) {
             out.fill(self.epsilon / count);
@@ -71,7 +80,7 @@ impl Softmax {
             Rule::EpsilonGreedy
         } else {
             for (probability, weight) in out.iter_mut().zip(weights) {
-                *probability = weight / sum;
+                *probability = *weight / sum;
             }
             Rule::Softmax
         }
@@ -116,6 +125,16 @@ pub(super) fn uniform(draw: f32, count: usize) -> usize {
 fn in_lanes(values: &[f32]) -> Vec<f32> {
     let mut lanes = values.to_vec();
     lanes.resize(values.len().next_multiple_of(LANES), f32::NEG_INFINITY);
+    lanes
+}
+
+/// The same for no more values than lanes, without asking for memory.
+#[inline(always)]
+fn few_in_lanes(values: &[f32]) -> [f32; LANES] {
+    let mut lanes = [f32::NEG_INFINITY; LANES];
+    for (lane, value) in lanes.iter_mut().zip(values) {
+        *lane = *value;
+    }
     lanes
 }
 

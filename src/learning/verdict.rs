@@ -18,8 +18,31 @@ pub struct Policy<'r> {
     now: Situation,
     softmax: Softmax,
     model: &'r LearningModel,
-    /// What the walk down the hierarchy has found so far.
+    walk: Walk,
+}
+
+/// The walk down a hierarchy, along all its choices.
+#[derive(Clone, Debug)]
+struct Walk {
+    /// The probability of each primitive subtask so far.
     totals: Vec<f64>,
+    /// The probabilities of the choices of all nodes from the root to where the walk is.
+    shares: Vec<f64>,
+    /// The values of one node's choices.
+    values: Vec<f32>,
+    /// Their probabilities.
+    chances: Vec<f32>,
+}
+
+impl Walk {
+    fn among(skills: usize) -> Self {
+        Self {
+            totals: vec![0.0; skills],
+            shares: Vec::new(),
+            values: Vec::new(),
+            chances: Vec::new(),
+        }
+    }
 }
 
 impl<'r, W: World> Agent<'r, W> {
@@ -29,7 +52,7 @@ impl<'r, W: World> Agent<'r, W> {
         let mind = self.mind.clone();
         Policy {
             now: Situation::new(&mind, self.world.catalogue().terminal()),
-            totals: vec![0.0; mind.skills.all().len()],
+            walk: Walk::among(mind.skills.all().len()),
             softmax: self.softmax,
             model: self.model,
             mind,
@@ -56,7 +79,7 @@ impl<'r> Policy<'r> {
         };
         Self {
             now: Situation::new(&mind, catalogue.terminal()),
-            totals: vec![0.0; skills.all().len()],
+            walk: Walk::among(skills.all().len()),
             softmax: Softmax::new(model),
             model,
             mind,
@@ -89,9 +112,9 @@ impl<'r> Policy<'r> {
     /// Adds to `totals` the probability with which the policy, followed from the root
     /// down, ends in each primitive subtask, in the catalogue's order.
     pub fn add_probabilities(&mut self, totals: &mut [f64]) {
-        self.totals.copy_from_slice(totals);
+        self.walk.totals.copy_from_slice(totals);
         self.descend(0, 1.0);
-        totals.copy_from_slice(&self.totals);
+        totals.copy_from_slice(&self.walk.totals);
     }
 
     /// V(root, s); 0 in a state in which the root cannot act.
@@ -117,22 +140,37 @@ impl<'r> Policy<'r> {
 
     fn descend(&mut self, node: usize, probability: f64) {
         if let Some(skill) = self.mind.plan.nodes[node].skill {
-            self.totals[skill] += probability;
+            self.walk.totals[skill] += probability;
             return;
         }
-        let choices = self.mind.plan.choices(node, self.now.state_type).to_vec();
-        let shares = self.shares(node, &choices);
-        for (child, share) in choices.into_iter().zip(shares) {
+        let state_type = self.now.state_type;
+        let count = self.mind.plan.choices(node, state_type).len();
+        let first = self.walk.shares.len();
+        self.push_shares(node);
+        for choice in 0..count {
+            let child = self.mind.plan.choices(node, state_type)[choice];
+            let share = self.walk.shares[first + choice];
             self.descend(child, probability * share);
         }
+        self.walk.shares.truncate(first);
     }
 
-    fn shares(&mut self, node: usize, choices: &[usize]) -> Vec<f64> {
+    /// Puts the probabilities of a node's choices on top of those of the nodes above it.
+    fn push_shares(&mut self, node: usize) {
+        let choices = self.mind.plan.choices(node, self.now.state_type);
         let random = self.model.composite_choice == CompositeChoice::Random;
-        if choices.len() == 1 || random || self.leads_to_one_skill(choices) {
-            return vec![1.0 / choices.len() as f64; choices.len()];
+        let Walk {
+            shares,
+            values,
+            chances,
+            ..
+        } = &mut self.walk;
+        let count = choices.len();
+        if count == 1 || random || self.mind.plan.leads_to_one_skill(choices) {
+            shares.resize(shares.len() + count, 1.0 / count as f64);
+            return;
         }
-        let mut values = Vec::with_capacity(choices.len());
+        values.clear();
         for &child in choices {
             let projected = self.mind.projected_value(&mut self.now, child);
             let inside = self
@@ -140,16 +178,9 @@ impl<'r> Policy<'r> {
                 .completion(&mut self.now, node, child, Completion::Inside);
             values.push(projected + inside);
         }
-        let mut out = vec![0.0; values.len()];
+        chances.resize(count, 0.0);
         self.softmax
-            .probabilities(&values, self.mind.temperature(node), &mut out);
-        out.into_iter().map(f64::from).collect()
-    }
-
-    /// Whether all choices are the same primitive subtask: then no share matters.
-    fn leads_to_one_skill(&self, choices: &[usize]) -> bool {
-        let skill = |child: &usize| self.mind.plan.nodes[*child].skill;
-        let first = choices.first().and_then(skill);
-        first.is_some() && choices.iter().all(|child| skill(child) == first)
+            .probabilities(values, self.mind.temperature(node), chances);
+        shares.extend(chances.iter().copied().map(f64::from));
     }
 }
