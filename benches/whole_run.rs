@@ -35,9 +35,10 @@ fn main() -> Result<(), Error> {
             })?,
             measured(|| recorded(&scenario, 1, Keep::All))?,
             measured(|| recorded(&scenario, 2, Keep::All))?,
+            measured(|| two_at_once(&scenario))?,
         ]);
     }
-    let median = |of: &dyn Fn(&[Cost; 3]) -> f64| {
+    let median = |of: &dyn Fn(&[Cost; 4]) -> f64| {
         let mut values: Vec<_> = turns.iter().map(of).collect();
         values.sort_by(f64::total_cmp);
         values[values.len() / 2]
@@ -75,6 +76,10 @@ fn main() -> Result<(), Error> {
         "two threads against one    {:6.2} times; they computed {:.1} % of the time",
         median(&|t| t[1].wall / t[2].wall),
         100.0 * processor(2) / (2.0 * wall(2))
+    );
+    println!(
+        "two processors allow       {:6.2} times: two runs at once, on one thread each and unrecorded, against one",
+        median(&|t| 2.0 * t[0].wall / t[3].wall)
     );
     println!(
         "peak memory                {:6.1} MiB on two threads",
@@ -125,6 +130,19 @@ fn recorded(scenario: &Scenario, threads: usize, keep: Keep) -> Result<(), Error
 /// The same computation without events, recorder or files.
 fn unrecorded(scenario: &Scenario) -> Result<u64, Error> {
     with_world(scenario.clone(), Unrecorded)?
+}
+
+/// Two runs that have nothing to do with each other: what a second processor brings at best,
+/// where caches, memory and clock rates are shared.
+fn two_at_once(scenario: &Scenario) -> Result<(), Error> {
+    let run = || unrecorded(scenario).map_err(|error| error.to_string());
+    std::thread::scope(|scope| {
+        let runs = [scope.spawn(run), scope.spawn(run)];
+        for run in runs {
+            run.join().map_err(|_| "a run has panicked")??;
+        }
+        Ok(())
+    })
 }
 
 struct Unrecorded;
