@@ -65,8 +65,8 @@ fn a_rollout_is_the_same_however_it_is_watched() {
     let run = finished();
     let state = run.archive().latest().unwrap();
     let specimen = Specimen::at(&state, 0).unwrap();
-    let mut stepped = run.bench.rollout(specimen, 0);
-    let mut advanced = run.bench.rollout(specimen, 0);
+    let mut stepped = run.bench.rollout(specimen, 0, None);
+    let mut advanced = run.bench.rollout(specimen, 0, None);
     let mut taken = 0;
     for stride in [1, 1, 2, 7, 60, 300, 1, 500] {
         advanced.advance(stride);
@@ -95,7 +95,7 @@ fn rollouts_have_streams_of_their_own() {
     let run = finished();
     let state = run.archive().latest().unwrap();
     let specimen = Specimen::at(&state, 0).unwrap();
-    let start = |number| run.bench.rollout(specimen, number).snapshot().at;
+    let start = |number| run.bench.rollout(specimen, number, None).snapshot().at;
     assert_eq!(start(0), start(0));
     assert_ne!(start(0), start(1));
 }
@@ -104,7 +104,7 @@ fn rollouts_have_streams_of_their_own() {
 fn a_trial_that_is_over_stays_until_the_next_step() {
     let run = finished();
     let state = run.archive().latest().unwrap();
-    let mut rollout = run.bench.rollout(Specimen::at(&state, 0).unwrap(), 0);
+    let mut rollout = run.bench.rollout(Specimen::at(&state, 0, None).unwrap(), 0);
     let last = loop {
         let trace = rollout.step().unwrap();
         if trace.ended.is_some() {
@@ -329,7 +329,7 @@ fn looking_at_individuals_leaves_the_run_as_it_is() {
     let state = run.archive().latest().unwrap();
     let copy = (*state).clone();
     let specimen = Specimen::at(&state, 1).unwrap();
-    run.bench.rollout(specimen, 5).advance(1000);
+    run.bench.rollout(specimen, 5, None).advance(1000);
     let _ = run.bench.selection(specimen);
     let _ = run.bench.profiles(specimen, 0);
     assert!(*state == copy);

@@ -10,7 +10,7 @@ use super::output::{self, Done};
 use crate::dashboard::keys::Key;
 use crate::dashboard::{App, FrameFormat, Input, Mode, Still, ViewId, render};
 use crate::lab::Recording;
-use crate::lab::specimen::{Archive, bench};
+use crate::lab::specimen::{Archive, Start, bench};
 
 /// Print one frame of the dashboard over a recorded run.
 ///
@@ -25,6 +25,11 @@ Examples:
 pub(super) struct Args {
     /// The run folder.
     folder: PathBuf,
+
+    /// The state in which the trials of rollouts begin: what is the case, and where the
+    /// agent is, such as 'from R to B at 0,3' or 'carrying at 500,1200 heading 90'.
+    #[arg(long, value_name = "STATE")]
+    start: Option<String>,
 
     /// Columns and rows.
     #[arg(long, value_name = "WxH", default_value = "120x40")]
@@ -94,7 +99,11 @@ pub(super) fn main(args: &Args) -> Done {
     let manifest = recording.manifest;
     let bench = bench(manifest.scenario, manifest.seed)?;
     let folder = args.folder.display().to_string();
-    let app = App::new(bench, folder, Mode::Replay, look, key_map);
+    let start = args.start.as_deref().map(|text| Start::read(text, bench));
+    let start = start
+        .transpose()
+        .map_err(|error| format!("--start: {error}"))?;
+    let app = App::new(bench, folder, Mode::Replay, look, key_map).beginning_at(start);
     let mut still = Still::new(app, Archive::new(bench, &args.folder, None));
     let Size(columns, rows) = args.size;
     still.update(Input::Resize(columns, rows));

@@ -14,7 +14,7 @@ use crate::dashboard::look::Look;
 use crate::dashboard::session::{Exit, Session, Source};
 use crate::dashboard::terminal::{Terminal, is_terminal};
 use crate::dashboard::{App, Mode, RunsTable};
-use crate::lab::specimen::{Archive, Bench};
+use crate::lab::specimen::{Archive, Bench, Start};
 
 /// How the dashboard looks.
 #[derive(Clone, Debug, clap::Args)]
@@ -68,6 +68,7 @@ impl Show {
             keys,
             fps: self.fps,
             mouse: self.mouse,
+            start: None,
         })
     }
 }
@@ -79,9 +80,16 @@ pub(super) struct Outfit {
     keys: KeyMap,
     fps: f64,
     mouse: bool,
+    /// Where the trials that are watched begin, if the person has said so.
+    start: Option<Start>,
 }
 
 impl Outfit {
+    /// The same, with trials that begin there.
+    pub(super) fn beginning_at(self, start: Option<Start>) -> Self {
+        Self { start, ..self }
+    }
+
     /// Shows a dashboard over a run until somebody or something ends it.
     pub(super) fn show(
         self,
@@ -116,7 +124,7 @@ impl Outfit {
         };
         let name = folder.display().to_string();
         let (look, keys) = (self.look.clone(), self.keys.clone());
-        let app = App::new(what, name, mode, look, keys);
+        let app = App::new(what, name, mode, look, keys).beginning_at(self.start);
         let archive = Archive::new(what, folder, controls);
         let session = Session::new(app, archive, source, folder, terminal, self.fps)?;
         Ok(session)

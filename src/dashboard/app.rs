@@ -17,17 +17,17 @@ use super::panel::panel;
 use super::steering::{Steered, steer};
 use super::views::{self, View, ViewId, panels};
 use crate::lab::Event;
-use crate::lab::specimen::Bench;
+use crate::lab::specimen::{Bench, Start};
 
 /// Smallest size, in columns and rows, at which there is something to see.
 pub const SMALLEST: (u16, u16) = (40, 12);
 
 /// The dashboard.
 pub struct App {
-    desk: Desk,
-    views: Vec<(ViewId, Box<dyn View>)>,
-    view: ViewId,
-    overlay: Option<Overlay>,
+    pub(super) desk: Desk,
+    pub(super) views: Vec<(ViewId, Box<dyn View>)>,
+    pub(super) view: ViewId,
+    pub(super) overlay: Option<Overlay>,
     dirty: bool,
 }
 
@@ -70,6 +70,22 @@ impl App {
         self.prepare()
     }
 
+    /// The same dashboard, opened from somewhere that going back leads to.
+    #[must_use]
+    pub fn within(mut self, within: bool) -> Self {
+        self.desk.within = within;
+        self
+    }
+
+    /// Lets the trials that are watched begin there.
+    #[must_use]
+    pub fn beginning_at(mut self, start: Option<Start>) -> Self {
+        if let Some(start) = start {
+            self.desk.stage.begin_at(start);
+        }
+        self
+    }
+
     /// Travels to the generation with this number, or the nearest that there is.
     pub fn travel_to(&mut self, generation: u64) -> Vec<Effect> {
         self.desk.travel_to(generation);
@@ -90,6 +106,10 @@ impl App {
             Input::Key(key) => {
                 self.dirty = true;
                 effects = self.key(key);
+            }
+            Input::Mouse(mouse) => {
+                self.dirty = true;
+                effects = self.mouse(mouse);
             }
             Input::Resize(columns, rows) => {
                 self.dirty = true;
@@ -164,7 +184,7 @@ impl App {
     fn on_screen(&self) -> Vec<ViewId> {
         match self.view {
             ViewId::Overview => {
-                let placed = panels(self.body());
+                let placed = panels(self.body(), self.desk.scenery());
                 placed.into_iter().map(|(id, _)| id).collect()
             }
             view => vec![view],
@@ -195,6 +215,11 @@ impl App {
         let Some(action) = in_view.or_else(|| keys.in_view(key, self.view)) else {
             return Vec::new();
         };
+        self.perform(action)
+    }
+
+    /// Does what is asked for: the view that keys act on first, then the dashboard.
+    pub(super) fn perform(&mut self, action: Action) -> Vec<Effect> {
         let active = self.active();
         for id in [active, self.view] {
             let Some((_, view)) = self.views.iter_mut().find(|(known, _)| *known == id) else {
@@ -212,9 +237,7 @@ impl App {
         match open {
             Overlay::Help { scroll } => {
                 let action = keys.in_view(key, self.view);
-                let most = overlay::help_lines(&self.desk, self.view, &self.lessons()).len();
-                let scroll = overlay::scrolled(scroll, action, self.desk.size.1, most);
-                self.overlay = scroll.map(|scroll| Overlay::Help { scroll });
+                self.scroll_help(scroll, action);
                 Vec::new()
             }
             Overlay::Export => match keys.in_scope(key, Scope::ExportMenu) {
@@ -227,6 +250,13 @@ impl App {
                 _ => Vec::new(),
             },
         }
+    }
+
+    /// Scrolls help; what does not scroll closes it.
+    pub(super) fn scroll_help(&mut self, scroll: u16, action: Option<Action>) {
+        let most = overlay::help_lines(&self.desk, self.view, &self.lessons()).len();
+        let scroll = overlay::scrolled(scroll, action, self.desk.size.1, most);
+        self.overlay = scroll.map(|scroll| Overlay::Help { scroll });
     }
 
     /// What no view does itself.
@@ -282,7 +312,7 @@ impl App {
 
     /// The panel after, or before, the one that has the focus.
     fn neighbour(&self, by: isize) -> ViewId {
-        let placed = panels(self.body());
+        let placed = panels(self.body(), self.desk.scenery());
         let here = placed.iter().position(|(id, _)| *id == self.desk.focus);
         let count = placed.len().max(1) as isize;
         let next = here.map_or(0, |here| (here as isize + by).rem_euclid(count));
@@ -354,7 +384,7 @@ impl App {
         header::draw(desk, self.view, area, buffer);
         match self.view {
             ViewId::Overview => {
-                for (id, place) in panels(body(area)) {
+                for (id, place) in panels(body(area), desk.scenery()) {
                     self.draw_panel(id, place, id == desk.focus, buffer);
                 }
             }

@@ -101,6 +101,8 @@ pub struct Desk {
     pub pace: Pace,
     /// Whether time runs through the generations.
     pub playing: bool,
+    /// Whether the dashboard was opened from somewhere that going back leads to.
+    pub within: bool,
     pub(super) stepping: bool,
     pub(super) stopping: bool,
     pub(super) closed: bool,
@@ -135,6 +137,7 @@ impl Desk {
             clock: Duration::ZERO,
             pace: Pace::default(),
             playing: false,
+            within: false,
             stepping: false,
             stopping: false,
             closed: mode == Mode::Replay,
@@ -328,13 +331,17 @@ impl Desk {
         parse(&individual.tree, self.catalogue()).ok()
     }
 
-    /// The individual on the stage, if it is in the generation shown; else the selected one.
+    /// The individual on the stage as it was in the generation that it was taken from, else
+    /// the selected one of the generation shown; with the number of the generation.
     #[must_use]
-    pub fn looked_at(&self) -> Option<&RankedRecord> {
-        let staged = self.stage.subject().map(|subject| subject.id);
-        let mut individuals = self.shown()?.individuals.iter();
-        let staged = individuals.find(|individual| Some(individual.id) == staged);
-        staged.or_else(|| self.selected())
+    pub fn looked_at(&self) -> Option<(u64, &RankedRecord)> {
+        let staged = self.stage.subject().and_then(|subject| {
+            let record = self.live.generation(subject.generation)?;
+            let mut individuals = record.individuals.iter();
+            let staged = individuals.find(|individual| individual.id == subject.id)?;
+            Some((record.generation, staged))
+        });
+        staged.or_else(|| Some((self.shown()?.generation, self.selected()?)))
     }
 
     /// The individual that should be on the stage.

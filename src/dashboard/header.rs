@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::desk::{Activity, Desk, Mode};
 use super::keys::{Action, KeyMap};
-use super::look::{Look, Paint, fitted, one_line, put, width};
+use super::look::{Look, Paint, fitted, fitted_parts, one_line, put, width};
 use super::views::ViewId;
 
 /// Actions that lead around the overview.
@@ -22,7 +22,9 @@ const COMMON: &[Action] = &[
 ];
 
 /// Actions that every hint bar ends with.
-const ALWAYS: &[Action] = &[Action::Help, Action::Quit];
+pub(super) const ALWAYS: &[Action] = &[Action::Help, Action::Quit];
+/// The same where there is somewhere to go back to.
+const ALWAYS_WITHIN: &[Action] = &[Action::Help, Action::Back];
 
 /// Draws the first line: the run, what it is doing, and the view.
 ///
@@ -56,7 +58,7 @@ pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
         buffer,
         line,
         (column, 0),
-        &fitted(&text, room, look.signs),
+        &fitted_parts(&text, room, look.signs),
         look.style(Paint::Text),
     );
     let mut start = line
@@ -118,13 +120,18 @@ pub(super) fn hint_bar(
     if let Some(text) = desk.message() {
         return put_message(&desk.look, text, line, buffer);
     }
+    let always = match desk.within {
+        true => ALWAYS_WITHIN,
+        false => ALWAYS,
+    };
     let order = match view {
         ViewId::Overview => [AROUND, COMMON, hints],
         _ => [hints, &[Action::Back], COMMON],
     };
     let actions = order.into_iter().flatten().copied();
     let useful = actions.filter(|action| is_useful(desk.mode, *action));
-    put_hints(&desk.look, &desk.keys, useful, line, buffer);
+    let useful = useful.filter(|action| !always.contains(action));
+    put_hints(&desk.look, &desk.keys, useful, always, line, buffer);
 }
 
 /// The last line of an area.
@@ -142,19 +149,22 @@ pub(super) fn put_message(look: &Look, text: &str, line: Rect, buffer: &mut Buff
     put(buffer, line, (0, 0), &text, look.style(Paint::Notice));
 }
 
-/// Draws what keys do, as many as there is room for; help and the way out always.
+/// Draws what keys do, as many as there is room for; at the right end the keys that are
+/// always named, help and the way out.
 pub(super) fn put_hints(
     look: &Look,
     keys: &KeyMap,
     actions: impl Iterator<Item = Action>,
+    always: &[Action],
     line: Rect,
     buffer: &mut Buffer,
 ) {
-    let always: Vec<_> = ALWAYS.iter().filter_map(|&a| keys.hint(a)).collect();
+    let hint = |action| keys.hint(action, look.signs);
+    let always: Vec<_> = always.iter().filter_map(|&action| hint(action)).collect();
     let right: u16 = always.iter().map(columns).sum();
     let right = line.width.saturating_sub(right);
     let mut column = 0;
-    for pair in actions.filter_map(|action| keys.hint(action)) {
+    for pair in actions.filter_map(hint) {
         if column + columns(&pair) > right {
             break;
         }

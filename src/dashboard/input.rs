@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::keys::Key;
+use super::mouse::Mouse;
 use crate::evolution::State;
 use crate::lab::Event;
 
@@ -12,6 +13,8 @@ use crate::lab::Event;
 pub enum Input {
     /// A key was pressed.
     Key(Key),
+    /// Something was done with the mouse.
+    Mouse(Mouse),
     /// The terminal has so many columns and rows.
     Resize(u16, u16),
     /// The run has a fact to tell.

@@ -15,7 +15,9 @@
 //! | `desk` | what the person has chosen to look at; every view reads it |
 //! | `stage` | the rollout of the individual that is looked at |
 //! | `keys` | actions, keys, and which key does what: one list for input, hints and help |
+//! | `mouse` | what clicks and the wheel do |
 //! | `look` | themes, signs, lines of text, the canvas that arenas are drawn on |
+//! | `scene`, `cells`, `lattice` | worlds, drawn: in their true proportions, or cell by cell |
 //! | `views` | one file a view; a view in a corner of the overview is a panel |
 //! | `runs` | the table of a study's runs, each of which can be opened |
 //! | `export` | a frame as text, ANSI or SVG |
@@ -26,14 +28,17 @@
 //! that implements `View`.
 
 mod app;
+mod cells;
 mod config;
 mod desk;
 mod export;
 mod header;
 mod input;
 pub mod keys;
+mod lattice;
 pub mod look;
 mod model;
+mod mouse;
 mod overlay;
 mod pace;
 mod panel;
@@ -53,6 +58,7 @@ pub use desk::{Chosen, Desk, Mode, Time};
 pub use export::{FrameFormat, render};
 pub use input::{Effect, Export, Input};
 pub use model::{Model, Progress};
+pub use mouse::{Gesture, Mouse};
 pub use runs::{RunRow, RunsEffect, RunsTable, Standing};
 pub use stage::{SPEEDS, Stage, Subject};
 pub use still::Still;

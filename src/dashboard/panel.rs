@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Block, Widget};
 
-use super::look::{Look, Paint, fitted, put, width};
+use super::look::{Look, Paint, fitted_parts, put, width};
 
 /// Draws border, title and caption of a panel, and returns the area inside.
 ///
@@ -28,7 +28,7 @@ pub(super) fn panel(
     let block = Block::bordered()
         .border_set(look.signs.border)
         .border_style(look.style(border));
-    let inside = block.inner(area);
+    let inside = inside(area);
     block.render(area, buffer);
     let room = Rect {
         width: area.width.saturating_sub(1),
@@ -43,9 +43,14 @@ pub(super) fn panel(
     let after = put(buffer, room, (1, 0), &title, look.style(name));
     let left = usize::from(room.width.saturating_sub(after));
     if !caption.is_empty() && left > 6 {
-        let caption = format!("{} ", fitted(caption, left - 2, look.signs));
+        let caption = format!("{} ", fitted_parts(caption, left - 2, look.signs));
         put(buffer, room, (after, 0), &caption, look.style(Paint::Dim));
         debug_assert!(width(&caption) < left);
     }
     inside
+}
+
+/// The area inside the border of a panel.
+pub(super) fn inside(area: Rect) -> Rect {
+    Block::bordered().inner(area)
 }

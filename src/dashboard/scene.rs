@@ -4,9 +4,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Rect};
 use ratatui::style::{Modifier, Style};
 
+use super::cells::draw_cells;
 use super::desk::Desk;
 use super::look::{Canvas, Layer, Look, Paint, put};
 use super::sight::Sight;
+use crate::lab::specimen::PolicyMap;
 use crate::worlds::scene::{Mark, Role, Scenery, Snapshot};
 
 /// The largest area in the middle that shows the extent in its true proportions, cells
@@ -22,24 +24,40 @@ pub(super) fn in_proportion(area: Rect, extent: [f64; 2]) -> Rect {
     )
 }
 
-/// Draws the world and, if there is one, the agent in it.
-pub(super) fn draw_scene(
-    desk: &Desk,
-    scenery: &Scenery,
-    snapshot: Option<&Snapshot>,
-    area: Rect,
-    buffer: &mut Buffer,
-) {
+/// What is drawn besides the scenery.
+#[derive(Default)]
+pub(super) struct Scene<'s> {
+    /// The agent and its surroundings.
+    pub(super) snapshot: Option<&'s Snapshot>,
+    /// What can move or go, where it is while there is no agent to look at.
+    pub(super) marks: &'s [Mark],
+    /// Where the agent has been.
+    pub(super) trail: Vec<[f64; 2]>,
+    /// What the agent would do in each cell of a world of cells.
+    pub(super) cells: Option<&'s PolicyMap>,
+}
+
+impl Scene<'_> {
+    /// What stands somewhere, the agent apart.
+    pub(super) fn marks<'a>(&'a self, scenery: &'a Scenery) -> impl Iterator<Item = &'a Mark> {
+        let moving = self.snapshot.map_or(self.marks, |snapshot| &snapshot.marks);
+        scenery.places.iter().chain(moving)
+    }
+}
+
+/// Draws the world and, if there is one, the agent in it, as large as the area allows.
+pub(super) fn draw_scene(desk: &Desk, scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
+    let scenery = desk.scenery();
+    if scenery.grid.is_some() {
+        return draw_cells(desk, scene, area, buffer);
+    }
     let look = &desk.look;
+    let area = in_proportion(area, scenery.extent);
     let mut canvas = Canvas::new(look, area, [0.0, 0.0], scenery.extent);
-    draw_grid(look, &canvas, scenery, area, buffer);
-    if let Some(snapshot) = snapshot {
+    if let Some(snapshot) = scene.snapshot {
         shade_sight(look, &canvas, scenery, snapshot, area, buffer);
-        if let Some(rollout) = desk.stage.rollout() {
-            let trail = &rollout.status().trail;
-            for (from, to) in trail.iter().zip(trail.iter().skip(1)) {
-                canvas.line(*from, *to, Layer::Trail, Paint::Trail);
-            }
+        for (from, to) in scene.trail.iter().zip(scene.trail.iter().skip(1)) {
+            canvas.line(*from, *to, Layer::Trail, Paint::Trail);
         }
         for [from, to] in &snapshot.rays {
             canvas.line(*from, *to, Layer::Ray, Paint::Ray);
@@ -49,12 +67,11 @@ pub(super) fn draw_scene(
         canvas.line(*from, *to, Layer::Wall, Paint::Wall);
     }
     canvas.finish(buffer);
-    let moving = snapshot.map_or(&[][..], |snapshot| &snapshot.marks);
-    for mark in scenery.places.iter().chain(moving) {
+    for mark in scene.marks(scenery) {
         draw_mark(look, &canvas, mark, area, buffer);
     }
-    if let Some(snapshot) = snapshot {
-        draw_agent(look, &canvas, snapshot, area, buffer);
+    if let Some(snapshot) = scene.snapshot {
+        put_at(&canvas, snapshot.at, agent(look, snapshot), area, buffer);
     }
 }
 
@@ -94,6 +111,11 @@ pub(super) fn draw_mark(
     area: Rect,
     buffer: &mut Buffer,
 ) {
+    put_at(canvas, mark.at, sign(look, mark), area, buffer);
+}
+
+/// What stands for a mark.
+pub(super) fn sign<'m>(look: &Look, mark: &'m Mark) -> (&'m str, Style) {
     let signs = look.signs;
     let (sign, paint) = match mark.role {
         Role::Goal => (signs.goal, Paint::Goal),
@@ -101,33 +123,20 @@ pub(super) fn draw_mark(
         Role::Hazard => (signs.hazard, Paint::Hazard),
         Role::Landmark => (mark.label.as_str(), Paint::Landmark),
     };
-    let style = look.style(paint);
-    put_at(canvas, mark.at, (sign, style), area, buffer);
+    (sign, look.style(paint))
 }
 
-fn draw_agent(
-    look: &Look,
-    canvas: &Canvas<'_>,
-    snapshot: &Snapshot,
-    area: Rect,
-    buffer: &mut Buffer,
-) {
-    let signs = look.signs;
+/// What stands for the agent: a robot that carries something looks like what it carries.
+pub(super) fn agent(look: &Look, snapshot: &Snapshot) -> (&'static str, Style) {
     let sign = match snapshot.heading {
-        Some(heading) => {
-            let eighth = (heading / std::f64::consts::FRAC_PI_4)
-                .round()
-                .rem_euclid(8.0);
-            signs.headings[eighth as usize % 8]
-        }
-        None => signs.agent,
+        Some(heading) => look.signs.heading(heading),
+        None => look.signs.agent,
     };
-    // A robot that carries something looks like what it carries.
     let style = match snapshot.carries {
         Some(_) => look.style(Paint::Object).add_modifier(Modifier::REVERSED),
         None => look.style(Paint::Agent),
     };
-    put_at(canvas, snapshot.at, (sign, style), area, buffer);
+    (sign, style)
 }
 
 /// Writes a sign at a place, over what is there.
@@ -147,38 +156,4 @@ fn put_at(
     let background = Style::new().bg(cell.bg);
     cell.reset();
     put(buffer, area, (column, row), sign, background.patch(style));
-}
-
-/// Shows where the cells of a world of cells are, and fills those that are hazards.
-fn draw_grid(look: &Look, canvas: &Canvas<'_>, scenery: &Scenery, area: Rect, buffer: &mut Buffer) {
-    let Some([columns, rows]) = scenery.grid else {
-        return;
-    };
-    for (column, row) in (0..columns).flat_map(|column| (0..rows).map(move |row| (column, row))) {
-        let centre = [column as f64 + 0.5, row as f64 + 0.5];
-        if let Some(cell) = canvas.cell(centre) {
-            put(
-                buffer,
-                area,
-                cell,
-                look.signs.trail,
-                look.style(Paint::Border),
-            );
-        }
-    }
-    let mut hazards = vec![false; columns * rows];
-    let index = |[x, y]: [f64; 2]| y as usize * columns + x as usize;
-    let places = scenery.places.iter();
-    for mark in places.filter(|mark| mark.role == Role::Hazard) {
-        if let Some(hazard) = hazards.get_mut(index(mark.at)) {
-            *hazard = true;
-        }
-    }
-    let (sign, style) = (look.signs.hazard, look.style(Paint::Hazard));
-    for position in area.intersection(buffer.area).positions() {
-        let cell = (position.x - area.x, position.y - area.y);
-        if hazards.get(index(canvas.place(cell.0, cell.1))) == Some(&true) {
-            put(buffer, area, cell, sign, style);
-        }
-    }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::evolution::State;
 use crate::hierarchy::Tree;
-use crate::lab::specimen::{Bench, Rollout, Specimen, StepTrace};
+use crate::lab::specimen::{Bench, Rollout, Specimen, Start, StepTrace};
 
 /// Speeds of a rollout: times real time.
 pub const SPEEDS: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
@@ -52,6 +52,8 @@ pub struct Stage {
     /// Steps that were recorded, the latest first.
     traces: VecDeque<StepTrace>,
     number: u64,
+    /// Where trials begin, if the person has said so.
+    start: Option<Start>,
     halted: bool,
     speed: usize,
     owed: f64,
@@ -70,6 +72,7 @@ impl Stage {
             rollout: None,
             traces: VecDeque::new(),
             number: 0,
+            start: None,
             halted: false,
             speed: FIRST_SPEED,
             owed: 0.0,
@@ -119,6 +122,28 @@ impl Stage {
     #[must_use]
     pub fn traces(&self) -> usize {
         self.traces.len()
+    }
+
+    /// Where the agent has been in the trial of a recorded step, up to that step, the latest
+    /// place last: all places of the present trial, of an earlier one those that are recorded.
+    #[must_use]
+    pub fn trail(&self, back: usize) -> Vec<[f64; 2]> {
+        let (Some(rollout), Some(trace)) = (&self.rollout, self.trace(back)) else {
+            return Vec::new();
+        };
+        let status = rollout.status();
+        if status.trial == trace.trial {
+            let later = status.steps.saturating_sub(trace.step) as usize;
+            let until = status.trail.len().saturating_sub(later);
+            return status.trail.iter().take(until).copied().collect();
+        }
+        let before = self.traces.iter().skip(back);
+        let trial = before.take_while(|before| before.trial == trace.trial);
+        let mut trail: Vec<_> = trial
+            .flat_map(|step| [step.after.at, step.before.at])
+            .collect();
+        trail.reverse();
+        trail
     }
 
     /// Why there is nothing on the stage.
@@ -171,6 +196,11 @@ impl Stage {
             self.traces.truncate(RECORDED - 1);
             self.traces.push_front(trace);
         }
+    }
+
+    /// Lets all trials of all rollouts begin there.
+    pub(super) fn begin_at(&mut self, start: Start) {
+        self.start = Some(start);
     }
 
     /// Begins another rollout of the same individual: another start, other chances, and
@@ -246,10 +276,10 @@ impl Stage {
     }
 
     fn begin(&mut self) {
-        let (bench, number) = (self.bench, self.number);
+        let (bench, number, start) = (self.bench, self.number, self.start);
         let rollout = self
             .specimen()
-            .map(|specimen| bench.rollout(specimen, number));
+            .map(|specimen| bench.rollout(specimen, number, start));
         self.rollout = rollout;
         self.traces.clear();
         self.owed = 0.0;

@@ -139,7 +139,11 @@ impl<'r, W: World> Agent<'r, W> {
 
     /// Begins a trial.
     pub fn begin(&mut self, start: &W::Start, rng: &mut Stream) -> Trial<W::State> {
-        let state = self.world.begin(start, rng);
+        self.begin_in(self.world.begin(start, rng))
+    }
+
+    /// Begins a trial in a state.
+    pub fn begin_in(&mut self, state: W::State) -> Trial<W::State> {
         self.visited.clear();
         self.stack.clear();
         self.stack.push(Frame {

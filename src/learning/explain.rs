@@ -55,6 +55,21 @@ pub struct Level {
     pub active: usize,
 }
 
+impl Level {
+    /// V(i, s) of the node itself: C + V of the child that it prefers, the first of equals;
+    /// `None` where none can act.
+    #[must_use]
+    pub fn value(&self) -> Option<f32> {
+        let best = self.choices.iter().reduce(|best, next| {
+            match next.preference() > best.preference() {
+                true => next,
+                false => best,
+            }
+        })?;
+        Some(best.value + best.c)
+    }
+}
+
 /// The action of a primitive node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActionChoice {

@@ -20,8 +20,19 @@ pub struct Scenery {
     pub walls: Vec<[[f64; 2]; 2]>,
     /// Places that have a name or a meaning and never move.
     pub places: Vec<Mark>,
+    /// Primitive subtasks that move the agent by a cell.
+    pub moves: Vec<Move>,
     /// What a time step lasts in seconds, where time is real.
     pub time_step_s: Option<f64>,
+}
+
+/// A primitive subtask that moves the agent by a cell, if nothing is in the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    /// The subtask.
+    pub subtask: SubtaskId,
+    /// Where it moves the agent.
+    pub heading: f64,
 }
 
 /// What a mark means to the agent.
@@ -90,6 +101,9 @@ pub struct Snapshot {
     pub readings: Vec<Reading>,
     /// The type of the state; the catalogue's terminal type when the task is done.
     pub state_type: StateType,
+    /// Which of the [`variants`](Scenic::variants) is the case, by index; `None` when the
+    /// task is done.
+    pub variant: Option<usize>,
 }
 
 /// Inputs along which learned values are drawn, one after the other or in rows.

@@ -3,11 +3,12 @@
 use std::time::Duration;
 
 use maxq_lab::dashboard::keys::{Action, Key};
-use maxq_lab::dashboard::{Input, Mode};
+use maxq_lab::dashboard::{Gesture, Input, Mode, Mouse};
 use maxq_lab::evolution::GenerationRecord;
 use maxq_lab::hierarchy::Glyphs;
 use maxq_lab::lab::{Ending, Event};
 use proptest::prelude::*;
+use ratatui::layout::Position;
 
 use super::recorded::foraging;
 
@@ -73,9 +74,18 @@ fn event() -> impl Strategy<Value = Event> {
     ]
 }
 
+fn mouse() -> impl Strategy<Value = Mouse> {
+    let what = prop::sample::select(vec![Gesture::Click, Gesture::WheelUp, Gesture::WheelDown]);
+    (0..130_u16, 0..50_u16, what).prop_map(|(x, y, what)| Mouse {
+        at: Position::new(x, y),
+        what,
+    })
+}
+
 fn input() -> impl Strategy<Value = Input> {
     prop_oneof![
         8 => key().prop_map(Input::Key),
+        3 => mouse().prop_map(Input::Mouse),
         2 => (0..250_u16, 0..90_u16).prop_map(|(columns, rows)| Input::Resize(columns, rows)),
         3 => event().prop_map(|event| Input::Event(Box::new(event))),
         3 => (0..3000_u64).prop_map(|ms| Input::Tick(Duration::from_millis(ms))),

@@ -152,7 +152,7 @@ fn the_marked_individual_is_what_others_are_compared_with() {
     assert!(
         screen
             .text()
-            .contains(&format!("individual {marked}, the marked one"))
+            .contains(&format!("individual {marked} of generation 6, marked"))
     );
     // Who is marked is not compared with himself.
     screen.press("j j j");

@@ -15,5 +15,7 @@ mod anything;
 mod apart;
 mod behaviour;
 mod frames;
+mod mouse;
 mod recorded;
 mod runs;
+mod textbook;

@@ -8,7 +8,7 @@ use maxq_lab::dashboard::keys::KeyMap;
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
 use maxq_lab::dashboard::{App, Effect, Input, Mode, Still};
 use maxq_lab::hierarchy::Glyphs;
-use maxq_lab::lab::specimen::{Archive, Bench, bench};
+use maxq_lab::lab::specimen::{Archive, Bench, Start, bench};
 use maxq_lab::lab::{Event, Recording};
 use maxq_lab::scenario::Scenario;
 use tempfile::TempDir;
@@ -24,7 +24,8 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    fn new(scenario: &Scenario) -> Self {
+    /// A run of this scenario, with seed 1.
+    pub fn new(scenario: &Scenario) -> Self {
         let parent = tempfile::tempdir().unwrap();
         let folder = parent.path().join("run");
         common::run_in(&folder, scenario, 1, &common::threads(1));
@@ -38,9 +39,14 @@ impl Recorded {
 
     /// A dashboard that has been told nothing.
     pub fn blank(&self, mode: Mode, theme: &str, glyphs: Glyphs) -> Screen {
+        self.blank_from(None, mode, theme, glyphs)
+    }
+
+    fn blank_from(&self, start: Option<Start>, mode: Mode, theme: &str, glyphs: Glyphs) -> Screen {
         let look = Look::new(Theme::all(), theme, Signs::of(glyphs));
         let folder = format!("runs/{}-seed1", self.bench.scenario().name);
         let app = App::new(self.bench, folder, mode, look, KeyMap::default());
+        let app = app.beginning_at(start);
         Screen(Still::new(
             app,
             Archive::new(self.bench, &self.folder, None),
@@ -48,8 +54,19 @@ impl Recorded {
     }
 
     /// A dashboard over the whole run.
-    pub fn screen(&self, theme: &str, glyphs: Glyphs, (columns, rows): (u16, u16)) -> Screen {
-        let mut screen = self.blank(Mode::Replay, theme, glyphs);
+    pub fn screen(&self, theme: &str, glyphs: Glyphs, size: (u16, u16)) -> Screen {
+        self.screen_from(None, theme, glyphs, size)
+    }
+
+    /// The same, with trials that begin in one state.
+    pub fn screen_from(
+        &self,
+        start: Option<Start>,
+        theme: &str,
+        glyphs: Glyphs,
+        (columns, rows): (u16, u16),
+    ) -> Screen {
+        let mut screen = self.blank_from(start, Mode::Replay, theme, glyphs);
         screen.0.update(Input::Resize(columns, rows));
         for event in &self.events {
             screen.tell(event.clone());

@@ -50,7 +50,7 @@ fn blank(theme: &str, glyphs: Glyphs, (columns, rows): (u16, u16)) -> RunsTable 
     table
 }
 
-fn table(theme: &str, glyphs: Glyphs, size: (u16, u16)) -> RunsTable {
+pub fn table(theme: &str, glyphs: Glyphs, size: (u16, u16)) -> RunsTable {
     let mut table = blank(theme, glyphs, size);
     table.tell(rows());
     table

@@ -131,13 +131,13 @@ actions! {
     Open = "open", Everywhere, ["enter"], "open";
 
     /// Up.
-    Up = "up", Everywhere, ["up", "k"], "up";
+    Up = "up", Everywhere, ["up", "k"], "select";
     /// Down.
-    Down = "down", Everywhere, ["down", "j"], "down";
+    Down = "down", Everywhere, ["down", "j"], "select";
     /// Left.
-    Left = "left", Everywhere, ["left", "h"], "left";
+    Left = "left", Everywhere, ["left", "h"], "turn";
     /// Right.
-    Right = "right", Everywhere, ["right", "l"], "right";
+    Right = "right", Everywhere, ["right", "l"], "turn";
     /// A page up.
     PageUp = "page-up", Everywhere, ["page-up", "ctrl-u"], "page up";
     /// A page down.

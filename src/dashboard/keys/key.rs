@@ -6,6 +6,8 @@ use std::str::FromStr;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use thiserror::Error;
 
+use crate::dashboard::look::Signs;
+
 /// A key as a person presses it: a character as it comes out, or a named key, with
 /// Ctrl or Alt.
 ///
@@ -83,6 +85,22 @@ impl Key {
             other => other,
         };
         Self { code, modifiers }
+    }
+
+    /// Its name for people: arrows are arrows where there are signs for them.
+    #[must_use]
+    pub fn label(self, signs: &Signs) -> String {
+        let arrow = match self.code {
+            KeyCode::Right => 0,
+            KeyCode::Up => 2,
+            KeyCode::Left => 4,
+            KeyCode::Down => 6,
+            _ => return self.to_string(),
+        };
+        match self.modifiers.is_empty() && signs.dots {
+            true => signs.headings[arrow].to_owned(),
+            false => self.to_string(),
+        }
     }
 
     /// The character of a key without Ctrl and Alt.

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::action::{Action, Scope};
 use super::key::{Key, KeyError};
+use crate::dashboard::look::{Signs, width};
 use crate::dashboard::views::ViewId;
 
 /// Which key does what.
@@ -104,12 +105,22 @@ impl KeyMap {
             .map_or(&[], |(_, keys)| keys)
     }
 
-    /// The first key of an action and what it does, such as `p pause`; `None` if it is
-    /// unbound.
+    /// The first key of an action and what it does, such as `p pause`; of one that has an
+    /// opposite the keys of both, such as `↑↓ select`. `None` if it is unbound.
     #[must_use]
-    pub fn hint(&self, action: Action) -> Option<(String, &'static str)> {
-        let key = self.keys(action).first()?;
-        Some((key.to_string(), action.hint()))
+    pub fn hint(&self, action: Action, signs: &Signs) -> Option<(String, &'static str)> {
+        let both = match action {
+            Action::Up | Action::Down => &[Action::Up, Action::Down][..],
+            Action::Left | Action::Right => &[Action::Left, Action::Right],
+            _ => &[action],
+        };
+        let keys = both.iter().filter_map(|&action| self.keys(action).first());
+        let labels: Vec<_> = keys.map(|key| key.label(signs)).collect();
+        let between = match labels.iter().all(|label| width(label) == 1) {
+            true => "",
+            false => "/",
+        };
+        (!labels.is_empty()).then(|| (labels.join(between), action.hint()))
     }
 }
 

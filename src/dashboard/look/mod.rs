@@ -13,7 +13,7 @@ pub use chart::{Chart, Curve};
 pub use paint::Paint;
 pub use signs::Signs;
 pub use spark::sparkline;
-pub use text::{fitted, one_line, put, width};
+pub use text::{fitted, fitted_end, fitted_parts, one_line, put, width, wrapped};
 pub use theme::{StyleError, Theme};
 
 use ratatui::style::Style;

@@ -70,6 +70,16 @@ paints! {
     Sight = "sight";
     /// Proximity rays.
     Ray = "ray";
+    /// The lowest values of a world of cells.
+    Shade1 = "shade-1";
+    /// Low ones.
+    Shade2 = "shade-2";
+    /// Those in the middle.
+    Shade3 = "shade-3";
+    /// High ones.
+    Shade4 = "shade-4";
+    /// The highest.
+    Shade5 = "shade-5";
     /// The first primitive subtask, and what else comes first.
     Series1 = "series-1";
     /// The second.
@@ -97,6 +107,19 @@ impl Paint {
             Paint::Series6,
         ];
         SERIES[n % SERIES.len()]
+    }
+
+    /// The paint of a value at a place between the lowest, 0, and the highest, 1.
+    #[must_use]
+    pub fn shade(share: f32) -> Self {
+        const SHADES: [Paint; 5] = [
+            Paint::Shade1,
+            Paint::Shade2,
+            Paint::Shade3,
+            Paint::Shade4,
+            Paint::Shade5,
+        ];
+        SHADES[(share * 5.0).clamp(0.0, 4.0) as usize]
     }
 
     /// The paint with this name.

@@ -27,6 +27,9 @@ pub struct Signs {
     pub wall: &'static str,
     /// The trail where cells cannot be divided.
     pub trail: &'static str,
+    /// Walls between the cells of a world: by the sum of 1 if one leads up from here, 2 down,
+    /// 4 to the left, 8 to the right.
+    pub lines: [&'static str; 16],
     /// A ray where cells cannot be divided.
     pub ray: &'static str,
     /// Field of view where there is no colour to show it.
@@ -65,6 +68,8 @@ pub struct Signs {
     pub cursor: &'static str,
     /// Between what was and what came of it.
     pub becomes: &'static str,
+    /// So many times.
+    pub times: &'static str,
     /// Temperature.
     pub tau: &'static str,
     /// The probability of a random choice.
@@ -85,6 +90,9 @@ pub static UNICODE: Signs = Signs {
     hazard: "▒",
     wall: "█",
     trail: "·",
+    lines: [
+        " ", "╹", "╻", "┃", "╸", "┛", "┓", "┫", "╺", "┗", "┏", "┣", "━", "┻", "┳", "╋",
+    ],
     ray: "·",
     sight: "·",
     bars: [" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"],
@@ -104,6 +112,7 @@ pub static UNICODE: Signs = Signs {
     series: ["●", "○", "×"],
     cursor: "│",
     becomes: "→",
+    times: "×",
     tau: "τ",
     epsilon: "ε",
     degrees: "°",
@@ -132,6 +141,9 @@ pub static ASCII: Signs = Signs {
     hazard: "%",
     wall: "#",
     trail: ".",
+    lines: [
+        " ", "|", "|", "|", "-", "+", "+", "+", "-", "+", "+", "+", "-", "+", "+", "+",
+    ],
     ray: "'",
     sight: ":",
     bars: [" ", "_", ".", "-", "-", "=", "=", "#", "#"],
@@ -151,12 +163,20 @@ pub static ASCII: Signs = Signs {
     series: ["*", "o", "x"],
     cursor: "|",
     becomes: "->",
+    times: "x",
     tau: "T",
     epsilon: "epsilon",
     degrees: " deg",
 };
 
 impl Signs {
+    /// The sign of a heading in radians from +x, counter-clockwise.
+    #[must_use]
+    pub fn heading(&self, heading: f64) -> &'static str {
+        let eighth = heading / std::f64::consts::FRAC_PI_4;
+        self.headings[eighth.round().rem_euclid(8.0) as usize % 8]
+    }
+
     /// The signs of a glyph set.
     #[must_use]
     pub fn of(glyphs: Glyphs) -> &'static Self {

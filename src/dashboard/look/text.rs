@@ -45,6 +45,47 @@ pub fn fitted(text: &str, columns: usize, signs: &Signs) -> String {
     cut
 }
 
+/// The end of a text in a number of columns; an ellipsis before it says what is left out.
+#[must_use]
+pub fn fitted_end(text: &str, columns: usize, signs: &Signs) -> String {
+    let turned = |text: &str| -> String { text.chars().rev().collect() };
+    turned(&fitted(&turned(text), columns, signs))
+}
+
+/// As many parts of a text, from the first on, as a number of columns has room for; parts
+/// are separated by the separator's sign between blanks.
+#[must_use]
+pub fn fitted_parts(text: &str, columns: usize, signs: &Signs) -> String {
+    let separator = format!(" {} ", signs.separator);
+    let mut parts = text.split(&separator);
+    let mut fits = parts.next().unwrap_or("").to_owned();
+    for part in parts {
+        if fits.width() + separator.width() + part.width() > columns {
+            break;
+        }
+        fits = fits + &separator + part;
+    }
+    fitted(&fits, columns, signs)
+}
+
+/// A text in lines of at most so many columns, broken between words; all lines but the first
+/// are set in by two.
+#[must_use]
+pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.width() + 1 + word.width() <= columns => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            Some(_) => lines.push(format!("  {word}")),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 /// Writes a text into a row of an area from a column on, as far as there is room.
 /// Returns the column after it.
 pub fn put(buffer: &mut Buffer, area: Rect, at: (u16, u16), text: &str, style: Style) -> u16 {
@@ -77,6 +118,10 @@ mod tests {
         assert_eq!(fitted("ApproachNest", 8, &ASCII), "Approac~");
         assert_eq!(fitted("abc", 3, &ASCII), "abc");
         assert_eq!(fitted("abc", 0, &ASCII), "");
+        assert_eq!(wrapped("scored 1 22 3", 9), ["scored 1", "  22 3"]);
+        assert_eq!(fitted_end("runs/taxi", 5, &UNICODE), "…taxi");
+        assert_eq!(fitted_parts("id 7 · halted", 12, &UNICODE), "id 7");
+        assert_eq!(fitted_parts("id 7 · halted", 13, &UNICODE), "id 7 · halted");
         assert_eq!(width(&fitted("日本語日本語", 5, &UNICODE)), 5);
     }
 }

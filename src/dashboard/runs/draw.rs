@@ -7,7 +7,7 @@ use super::RunsTable;
 use super::columns::{Column, Placed, place};
 use super::row::{RunRow, Standing};
 use crate::dashboard::app::{SMALLEST, body, too_small};
-use crate::dashboard::header::{last_line, put_hints, put_message};
+use crate::dashboard::header::{ALWAYS, last_line, put_hints, put_message};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, one_line, put, sparkline, width};
 use crate::dashboard::overlay::{Line, line, plain, window};
@@ -17,7 +17,6 @@ use crate::dashboard::panel::panel;
 const HINTS: &[Action] = &[
     Action::Open,
     Action::Down,
-    Action::Up,
     Action::Sort,
     Action::Reverse,
     Action::Theme,
@@ -68,7 +67,7 @@ impl RunsTable {
             Some(text) => put_message(look, text, last_line(area), buffer),
             None => {
                 let hints = HINTS.iter().copied();
-                put_hints(look, &self.keys, hints, last_line(area), buffer);
+                put_hints(look, &self.keys, hints, ALWAYS, last_line(area), buffer);
             }
         }
         if let Some(scroll) = self.help {
@@ -132,12 +131,7 @@ impl RunsTable {
         let room = usize::from(area.width.saturating_sub(1));
         let placed = place(rows, room, self.look.signs);
         self.draw_head(&placed, area, buffer);
-        let sorted = self.sorted();
-        let here = sorted.iter().position(|&place| place == self.selected);
-        let visible = usize::from(area.height.saturating_sub(1));
-        let skipped = here.unwrap_or(0).saturating_sub(visible / 2);
-        let skipped = skipped.min(sorted.len().saturating_sub(visible));
-        for (below, &place) in sorted.iter().skip(skipped).take(visible).enumerate() {
+        for (below, place) in self.visible(area).into_iter().enumerate() {
             let line = Rect {
                 y: area.y + 1 + below as u16,
                 height: 1,

@@ -12,13 +12,16 @@ use std::collections::BTreeMap;
 
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
 pub use row::{RunRow, Standing};
 
+use super::app::body;
 use super::keys::{Action, Key, KeyMap};
 use super::look::Look;
+use super::mouse::line_at;
 use super::overlay;
+use super::panel::inside;
 use super::views::ViewId;
 use columns::Column;
 
@@ -123,8 +126,12 @@ impl RunsTable {
             self.help = overlay::scrolled(scroll, action, self.size.1, lines);
             return None;
         }
+        self.perform(action?)
+    }
+
+    pub(super) fn perform(&mut self, action: Action) -> Option<RunsEffect> {
         let page = (self.size.1 / 2).max(1) as isize;
-        match action? {
+        match action {
             Action::Up => self.select(-1),
             Action::Down => self.select(1),
             Action::PageUp => self.select(-page),
@@ -145,6 +152,32 @@ impl RunsTable {
             _ => {}
         }
         None
+    }
+
+    /// Selects the run at a place of the screen. Whether it was selected before.
+    pub(super) fn click(&mut self, at: Position) -> bool {
+        self.message = None;
+        if self.help.take().is_some() {
+            return false;
+        }
+        let (width, height) = self.size;
+        let table = inside(body(Rect::new(0, 0, width, height)));
+        let line = line_at(at, table, 1);
+        let clicked = line.and_then(|line| self.visible(table).get(line).copied());
+        let before = self.selected;
+        self.selected = clicked.unwrap_or(before);
+        clicked == Some(before)
+    }
+
+    /// The places of the rows that there is room for below the head, that of the selected run
+    /// among them.
+    fn visible(&self, area: Rect) -> Vec<usize> {
+        let sorted = self.sorted();
+        let here = sorted.iter().position(|&place| place == self.selected);
+        let rows = usize::from(area.height.saturating_sub(1));
+        let skipped = here.unwrap_or(0).saturating_sub(rows / 2);
+        let skipped = skipped.min(sorted.len().saturating_sub(rows));
+        sorted.into_iter().skip(skipped).take(rows).collect()
     }
 
     fn open(&mut self) -> Option<RunsEffect> {

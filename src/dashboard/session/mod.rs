@@ -14,7 +14,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, after, select};
-use crossterm::event::{Event as Typed, KeyCode, KeyEvent, KeyModifiers, MouseEventKind};
+use crossterm::event::Event as Typed;
 use signal_hook::consts::SIGHUP;
 
 pub use runs::{RunsExit, RunsSession};
@@ -22,7 +22,7 @@ pub use source::{Live, Source};
 
 use super::keys::Key;
 use super::terminal::{Job, Terminal};
-use super::{App, Effect, Input};
+use super::{App, Effect, Input, Mouse};
 use crate::lab::specimen::{Archive, bench};
 use crate::lab::{Life, Manifest, News};
 use loader::{Loaded, Loader};
@@ -105,6 +105,7 @@ impl<'s> Session<'s> {
     #[must_use]
     pub fn within(mut self) -> Self {
         self.within = true;
+        self.app = self.app.within(true);
         self
     }
 
@@ -199,13 +200,13 @@ impl<'s> Session<'s> {
             return;
         }
         let (look, keys) = (desk.look.clone(), desk.keys.clone());
-        let (mode, folder) = (desk.mode, desk.folder.clone());
+        let (mode, folder, within) = (desk.mode, desk.folder.clone(), desk.within);
         let turned = bench(manifest.scenario, manifest.seed)
             .map_err(|error| error.to_string())
             .and_then(|bench| {
                 let archive = Archive::new(bench, self.folder, None);
                 self.loader = Loader::start(archive).map_err(|error| error.to_string())?;
-                Ok(App::new(bench, folder, mode, look, keys))
+                Ok(App::new(bench, folder, mode, look, keys).within(within))
             });
         match turned {
             Ok(app) => {
@@ -270,9 +271,9 @@ impl<'s> Session<'s> {
     fn typed(&mut self, typed: Typed) -> Option<Exit> {
         let mut typed = Some(typed);
         while let Some(event) = typed {
-            if let Some(key) = key(&event) {
+            if let Some(input) = input(&event) {
                 self.due = true;
-                let effects = self.app.update(Input::Key(key));
+                let effects = self.app.update(input);
                 if let Some(exit) = self.carry_out(effects) {
                     return Some(exit);
                 }
@@ -336,16 +337,11 @@ fn describe(life: Life) -> Option<&'static str> {
     }
 }
 
-/// The key that something typed stands for; the wheel of the mouse stands for the arrows.
-fn key(typed: &Typed) -> Option<Key> {
-    let arrow = |code| Key::of(KeyEvent::new(code, KeyModifiers::NONE));
+/// What was done at the terminal, if it is of any account.
+fn input(typed: &Typed) -> Option<Input> {
     match typed {
-        Typed::Key(event) => Key::of(*event),
-        Typed::Mouse(mouse) => match mouse.kind {
-            MouseEventKind::ScrollUp => arrow(KeyCode::Up),
-            MouseEventKind::ScrollDown => arrow(KeyCode::Down),
-            _ => None,
-        },
+        Typed::Key(event) => Key::of(*event).map(Input::Key),
+        Typed::Mouse(event) => Mouse::of(*event).map(Input::Mouse),
         _ => None,
     }
 }

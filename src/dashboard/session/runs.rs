@@ -6,7 +6,8 @@ use crossbeam_channel::{Receiver, after, never, select};
 use crossterm::event::Event as Typed;
 use signal_hook::consts::SIGHUP;
 
-use super::{BACKGROUND, Exit, key};
+use super::{BACKGROUND, Exit, input};
+use crate::dashboard::Input;
 use crate::dashboard::runs::{RunRow, RunsEffect, RunsTable};
 use crate::dashboard::terminal::{Job, Terminal};
 
@@ -137,9 +138,14 @@ impl<'s> RunsSession<'s> {
     }
 
     fn typed(&mut self, typed: &Typed) -> Option<RunsExit> {
-        let key = key(typed)?;
+        let input = input(typed)?;
         self.due = true;
-        match self.table.key(key)? {
+        let effect = match input {
+            Input::Key(key) => self.table.key(key),
+            Input::Mouse(mouse) => self.table.mouse(mouse),
+            _ => None,
+        };
+        match effect? {
             RunsEffect::Open(place) => return Some(RunsExit::Open(place)),
             RunsEffect::Leave => return Some(RunsExit::End(Exit::Left)),
             RunsEffect::Suspend if !self.terminal.ask_to_suspend() => {

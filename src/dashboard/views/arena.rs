@@ -3,17 +3,18 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::View;
+use super::{View, case};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, put};
-use crate::dashboard::scene::{draw_scene, in_proportion};
+use crate::dashboard::scene::{Scene, draw_scene};
+use crate::lab::specimen::Rollout;
 use crate::worlds::scene::Snapshot;
 
 /// A rollout of the selected individual.
 ///
 /// ```text
-///  ╭ Arena  individual 27, 10x ─╮
+///  ╭ Arena  id 27, gen 12 · 10x ╮
 ///  │ ⡏⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⢹          │
 ///  │ ⡇   ▮      ⡇    ⢸          │   walls, batteries ▮, the nest ⌂; the robot,
 ///  │ ⡇  ↗·      ⡇ ⌂  ⢸          │   its heading, trail, rays and field of view
@@ -38,7 +39,7 @@ impl View for Arena {
         };
         let separator = desk.look.signs.separator;
         let (id, generation) = (subject.id, subject.generation);
-        format!("{speed} {separator} id {id}, generation {generation}")
+        format!("id {id}, gen {generation} {separator} {speed}")
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
@@ -47,10 +48,16 @@ impl View for Arena {
             height: area.height - foot,
             ..area
         };
-        let scenery = desk.scenery();
-        let place = in_proportion(above, scenery.extent);
-        let snapshot = desk.stage.rollout().map(|rollout| rollout.snapshot());
-        draw_scene(desk, scenery, snapshot.as_ref(), place, buffer);
+        let rollout = desk.stage.rollout();
+        let snapshot = rollout.map(|rollout| rollout.snapshot());
+        let cells = rollout.and_then(|rollout| rollout.cells());
+        let scene = Scene {
+            snapshot: snapshot.as_ref(),
+            trail: rollout.map_or(Vec::new(), |rollout| trail(rollout)),
+            cells: cells.as_ref(),
+            ..Scene::default()
+        };
+        draw_scene(desk, &scene, above, buffer);
         let below = Rect {
             y: area.y + above.height,
             height: foot,
@@ -73,8 +80,16 @@ impl View for Arena {
         "A rollout: a copy of the individual acts and learns in the arena, trial after trial, as\n\
          in its generation; evolution knows nothing of it. Shaded is what the robot sees, fine\n\
          lines are its proximity rays. A carried battery is gone from the arena. The state type\n\
-         says which subtasks can be active (Thesis Table 4.1). 1x is the robot's own time."
+         says which subtasks can be active (Thesis Table 4.1). 1x is the robot's own time.\n\
+         \n\
+         In worlds of cells each cell shows what the individual, as it has learned so far, would\n\
+         do there without exploring, all else being as it is: an arrow, or the letter of a\n\
+         subtask that does not move it; and V(root), or a digit from 0, the lowest, to 9."
     }
+}
+
+fn trail(rollout: &dyn Rollout) -> Vec<[f64; 2]> {
+    rollout.status().trail.iter().copied().collect()
 }
 
 /// Time step, state type, and how the latest trials ended.
@@ -91,24 +106,18 @@ fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut 
         return;
     };
     let status = rollout.status();
-    let step = match area.width >= 36 {
-        true => format!("trial {} step {:<4} ", status.trial, status.steps),
-        false => format!("{:<4} ", status.steps),
-    };
-    let column = put(buffer, area, (0, 0), &step, look.style(Paint::Text));
     let (text, paint) = match status.ended {
         Some(record) if record.delivered => (String::from("done"), Paint::Good),
         Some(_) => (String::from("gave up at the limit"), Paint::Bad),
-        None => (state_type(desk, snapshot), Paint::Notice),
+        None => (state(desk, snapshot), Paint::Notice),
     };
-    let room = usize::from(area.width.saturating_sub(column));
-    let text = fitted(&text, room, look.signs);
-    put(buffer, area, (column, 0), &text, look.style(paint));
-    let before = match status.history.is_empty() {
-        true => "no trial has ended yet",
-        false => "trials ",
-    };
-    let mut column = put(buffer, area, (0, 1), before, look.style(Paint::Dim));
+    let text = fitted(&text, usize::from(area.width), look.signs);
+    put(buffer, area, (0, 0), &text, look.style(paint));
+    let step = format!("trial {} step {:<4} ", status.trial, status.steps);
+    let mut column = put(buffer, area, (0, 1), &step, look.style(Paint::Text));
+    if !status.history.is_empty() {
+        column = put(buffer, area, (column, 1), "before ", look.style(Paint::Dim));
+    }
     for record in status.history.iter().rev() {
         let (text, paint) = match record.delivered {
             true => (format!("{} ", record.steps), Paint::Text),
@@ -119,11 +128,15 @@ fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut 
 }
 
 /// The state type's number and what is the case in it.
-fn state_type(desk: &Desk, snapshot: &Snapshot) -> String {
+fn state(desk: &Desk, snapshot: &Snapshot) -> String {
     let number = snapshot.state_type.number();
     let types = &desk.catalogue().state_types;
-    match types.get(number - 1) {
-        Some(info) => format!("{number} {}", info.description),
-        None => String::from("done"),
+    let Some(info) = types.get(number - 1) else {
+        return String::from("done");
+    };
+    let description = info.description;
+    match case(desk, snapshot) {
+        Some(case) => format!("{case}: {number} {description}"),
+        None => format!("{number} {description}"),
     }
 }

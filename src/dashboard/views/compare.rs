@@ -113,7 +113,11 @@ impl Side<'_> {
         let look = &desk.look;
         let record = self.record;
         let steps = record.fitness_steps as f64 / record.trials.len().max(1) as f64;
-        let head = format!("individual {}, {role}", record.id);
+        let generation = desk.shown().map_or(0, |shown| shown.generation);
+        let head = format!(
+            "individual {} of generation {generation}, {role}",
+            record.id
+        );
         let delivered = record.trials.iter().filter(|trial| trial.delivered).count();
         let facts = [
             format!("rank {}, {steps:.1} steps a trial", record.rank),
@@ -194,12 +198,12 @@ impl View for Compare {
             return;
         };
         let role = match desk.marked == Some(other.record.id) {
-            true => "the marked one",
-            false => "the best of the others",
+            true => "marked",
+            false => "best of the others",
         };
         let half = area.width / 2;
         let sides = [
-            (0, one.lines(desk, "the selected one", &other)),
+            (0, one.lines(desk, "selected", &other)),
             (half, other.lines(desk, role, &one)),
         ];
         for (x, lines) in sides {
@@ -213,7 +217,7 @@ impl View for Compare {
         }
         let key = desk
             .keys
-            .hint(Action::Mark)
+            .hint(Action::Mark, look.signs)
             .map_or(String::new(), |(key, _)| key);
         let note =
             format!("+ has what the other has not   {key} marks the selected one for comparison");
@@ -226,7 +230,6 @@ impl View for Compare {
     fn hints(&self) -> &'static [Action] {
         &[
             Action::Down,
-            Action::Up,
             Action::Mark,
             Action::Best,
             Action::ViewInspector,

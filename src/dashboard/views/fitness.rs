@@ -38,7 +38,10 @@ impl View for Fitness {
     fn caption(&self, desk: &Desk) -> String {
         match desk.shown().map(|record| better_half(record)) {
             None | Some(0) => String::from("time steps a trial"),
-            Some(half) => format!("time steps a trial, of the {half} best"),
+            Some(half) => {
+                let separator = desk.look.signs.separator;
+                format!("time steps a trial {separator} the {half} best")
+            }
         }
     }
 
@@ -60,10 +63,7 @@ impl View for Fitness {
         draw_legend(look, shown, legend, buffer);
         if two {
             difference_chart(desk).draw(look, below, buffer);
-            let text = format!(
-                "structural difference to the best {:.1}",
-                shown.mean_difference
-            );
+            let text = format!("difference to the best {:.1}", shown.mean_difference);
             put(
                 buffer,
                 difference,

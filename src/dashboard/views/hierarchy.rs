@@ -7,7 +7,7 @@ use super::{View, nothing_yet, origin};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, one_line, put, width};
+use crate::dashboard::look::{Paint, fitted, one_line, put, width, wrapped};
 use crate::evolution::{Origin, RankedRecord};
 use crate::hierarchy::{Tree, draw, to_dot};
 
@@ -33,13 +33,15 @@ pub(super) struct Hierarchy {
 impl View for Hierarchy {
     fn caption(&self, desk: &Desk) -> String {
         let looked_at = desk.looked_at();
-        looked_at.map_or(String::new(), |individual| {
-            format!("individual {}, rank {}", individual.id, individual.rank)
+        looked_at.map_or(String::new(), |(generation, individual)| {
+            let separator = desk.look.signs.separator;
+            let (id, rank) = (individual.id, individual.rank);
+            format!("id {id}, gen {generation} {separator} rank {rank}")
         })
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let Some(individual) = desk.looked_at() else {
+        let Some((_, individual)) = desk.looked_at() else {
             return nothing_yet(desk, area, buffer);
         };
         let look = &desk.look;
@@ -74,17 +76,12 @@ impl View for Hierarchy {
     }
 
     fn hints(&self) -> &'static [Action] {
-        &[
-            Action::Halt,
-            Action::StepRollout,
-            Action::Best,
-            Action::Down,
-        ]
+        &[Action::Halt, Action::StepRollout, Action::Best]
     }
 
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
         let individual = desk.looked_at();
-        let tree = individual.and_then(|individual| desk.tree(individual));
+        let tree = individual.and_then(|(_, individual)| desk.tree(individual));
         let last = tree.map_or(0, |tree| tree.nodes().len()).saturating_sub(1);
         let page = usize::from(desk.size.1 / 2);
         let here = self.scroll.min(last);
@@ -102,7 +99,7 @@ impl View for Hierarchy {
     }
 
     fn csv(&self, desk: &Desk) -> Option<String> {
-        let individual = desk.looked_at()?;
+        let (_, individual) = desk.looked_at()?;
         let tree = desk.tree(individual)?;
         let table = Table::of(desk, individual, &tree, u16::MAX);
         let mut csv = String::from("node,parent,subtask,state_types,temperature,invoked\n");
@@ -123,7 +120,7 @@ impl View for Hierarchy {
     }
 
     fn dot(&self, desk: &Desk) -> Option<String> {
-        let tree = desk.tree(desk.looked_at()?)?;
+        let tree = desk.tree(desk.looked_at()?.1)?;
         Some(to_dot(&tree, desk.catalogue()))
     }
 
@@ -273,11 +270,13 @@ impl Table {
 /// Below the tree: where the individual comes from and how it did.
 fn draw_story(desk: &Desk, individual: &RankedRecord, area: Rect, buffer: &mut Buffer) {
     let look = &desk.look;
-    let room = usize::from(area.width.saturating_sub(2));
-    for (row, (text, paint)) in story(individual).iter().enumerate() {
-        let Ok(row) = u16::try_from(row) else { return };
-        let text = fitted(&one_line(text), room, look.signs);
-        put(buffer, area, (2, row), &text, look.style(*paint));
+    let room = usize::from(area.width.saturating_sub(3));
+    let lines = story(individual).into_iter().flat_map(|(text, paint)| {
+        let lines = wrapped(&one_line(&text), room);
+        lines.into_iter().map(move |line| (line, paint))
+    });
+    for (row, (text, paint)) in (0..area.height).zip(lines) {
+        put(buffer, area, (2, row), &text, look.style(paint));
     }
 }
 

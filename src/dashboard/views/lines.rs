@@ -112,7 +112,42 @@ pub(super) fn number(value: f32) -> String {
         _ if size < 9999.95 => format!("{value:.1}"),
         _ => format!("{value:.1e}"),
     };
-    // What rounds to nothing has no sign.
+    unsigned_zero(text)
+}
+
+/// Digits after the point with which the largest of some values has four in all, and no
+/// column is wider than eight.
+pub(super) fn decimals(values: impl IntoIterator<Item = f32>) -> usize {
+    let sizes = values.into_iter().map(f32::abs);
+    let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f32::max);
+    match largest {
+        size if size < 0.00995 => 5,
+        size if size < 0.9995 => 4,
+        size if size < 99.995 => 3,
+        size if size < 999.95 => 2,
+        _ => 1,
+    }
+}
+
+/// A value with so many digits after the point, in at most eight columns.
+pub(super) fn fixed(value: f32, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match value.is_finite() && text.len() <= 8 {
+        true => unsigned_zero(text),
+        false => number(value),
+    }
+}
+
+/// Two values with as many digits as tell them apart.
+pub(super) fn told_apart(one: f32, other: f32) -> [String; 2] {
+    let texts = |decimals| [one, other].map(|value| fixed(value, decimals));
+    let mut some = (decimals([one, other])..=6).map(texts);
+    let apart = some.find(|[one, other]| one != other);
+    apart.unwrap_or_else(|| [one, other].map(|value| format!("{value:e}")))
+}
+
+/// What rounds to nothing has no sign.
+fn unsigned_zero(text: String) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_owned(),
         _ => text,
@@ -139,6 +174,11 @@ mod tests {
         assert_eq!(number(-12.34567), "-12.346");
         assert_eq!(number(-1234.56), "-1234.6");
         assert_eq!(number(1.0e7), "1.0e7");
+        assert_eq!(decimals([0.5, -12.0, f32::NAN]), 3);
+        assert_eq!((decimals([0.0123]), decimals([])), (4, 5));
+        assert_eq!(fixed(-0.00004, 4), "0.0000");
+        assert_eq!(told_apart(-3.50001, -3.50002), ["-3.50001", "-3.50002"]);
+        assert_eq!(told_apart(1.0, 2.0), ["1.000", "2.000"]);
         for value in [f32::MAX, f32::MIN, f32::NAN, f32::MIN_POSITIVE] {
             assert!(number(value).len() <= 8);
         }

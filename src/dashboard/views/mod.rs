@@ -19,7 +19,7 @@ mod stepper;
 use std::str::FromStr;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use thiserror::Error;
 
 pub(super) use overview::panels;
@@ -30,6 +30,7 @@ use super::keys::Action;
 use super::look::{Paint, fitted, put};
 use crate::evolution::Origin;
 use crate::worlds::Catalogue;
+use crate::worlds::scene::Snapshot;
 
 /// A view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -153,6 +154,12 @@ pub(super) trait View: Send {
         None
     }
 
+    /// Selects what is at a place of the area that it was drawn into. Whether something else
+    /// was selected before.
+    fn click(&mut self, _desk: &mut Desk, _area: Rect, _at: Position) -> bool {
+        false
+    }
+
     /// Computes what drawing needs, after every input while the view is on the screen.
     fn prepare(&mut self, _desk: &Desk) {}
 
@@ -199,6 +206,15 @@ fn nothing_yet(desk: &Desk, area: Rect, buffer: &mut Buffer) {
     put(buffer, area, (1, 0), &text, desk.look.style(Paint::Dim));
 }
 
+/// What is the case besides the agent's place, where the state type does not tell: in worlds
+/// of cells.
+fn case<'d>(desk: &'d Desk, snapshot: &Snapshot) -> Option<&'d str> {
+    desk.scenery().grid?;
+    let variants = desk.bench.variants();
+    let case = variants.get(snapshot.variant?);
+    case.filter(|_| variants.len() > 1).map(String::as_str)
+}
+
 /// How an individual came to be, in a word or two.
 fn origin(origin: &Origin) -> String {
     match origin {
@@ -214,7 +230,7 @@ fn origin(origin: &Origin) -> String {
 
 /// One capital letter for each primitive subtask: the first of its capitals, or else of
 /// its letters, that no other has.
-fn letters(catalogue: &Catalogue) -> Vec<char> {
+pub(super) fn letters(catalogue: &Catalogue) -> Vec<char> {
     let mut letters: Vec<char> = Vec::new();
     for primitive in catalogue.primitives() {
         let name = catalogue.subtask(primitive).name;

@@ -6,12 +6,15 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::{View, ViewId};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
+use crate::worlds::scene::Scenery;
 
 /// Everything at a glance: the panels, as many as there is room for.
 pub(super) struct Overview;
 
 /// Columns below which there is room for four panels only.
 const WIDE: u16 = 110;
+/// Least columns of the arena.
+const ARENA: u16 = 28;
 /// Columns of the status panel.
 const STATUS: u16 = 36;
 
@@ -25,14 +28,17 @@ const STATUS: u16 = 36;
 ///  ╭ Fitness ╮╭ Policy ────╮╭ Popul. ─╮    ╭ Fitness ────╮╭ Population ╮
 ///  ╰─────────╯╰────────────╯╰─────────╯    ╰─────────────╯╰────────────╯
 /// ```
-pub(in crate::dashboard) fn panels(area: Rect) -> Vec<(ViewId, Rect)> {
+pub(in crate::dashboard) fn panels(area: Rect, scenery: &Scenery) -> Vec<(ViewId, Rect)> {
     let upper = area.height * 14 / 25;
     let rows = Layout::vertical([Constraint::Length(upper), Constraint::Fill(1)]).areas(area);
     let [above, below]: [Rect; 2] = rows;
-    // Cells are about twice as high as wide: a square arena.
-    let square = (upper.saturating_sub(2) * 2 + 2).min(area.width / 2);
+    // As wide as the world is for its height, cells being about twice as high as wide.
+    let [width, height] = scenery.extent;
+    let arena = f64::from(upper.saturating_sub(2)) * 2.0 * width / height;
+    let arena = (arena as u16 + 2).max(ARENA).min(area.width / 2);
     if area.width < WIDE {
-        let [arena, hierarchy] = columns(above, [Constraint::Length(square), Constraint::Fill(1)]);
+        let upper = [Constraint::Length(arena), Constraint::Fill(1)];
+        let [arena, hierarchy] = columns(above, upper);
         let [fitness, population] = columns(below, [Constraint::Fill(1), Constraint::Fill(1)]);
         return vec![
             (ViewId::Arena, arena),
@@ -42,7 +48,7 @@ pub(in crate::dashboard) fn panels(area: Rect) -> Vec<(ViewId, Rect)> {
         ];
     }
     let upper = [
-        Constraint::Length(square),
+        Constraint::Length(arena),
         Constraint::Fill(1),
         Constraint::Length(STATUS),
     ];

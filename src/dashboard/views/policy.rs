@@ -10,7 +10,7 @@ use ratatui::style::Modifier;
 use super::{View, letters, nothing_yet};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Chart, Curve, Paint, fitted, one_line, put, width};
+use crate::dashboard::look::{Chart, Curve, Paint, fitted, one_line, put, sparkline, width};
 use crate::evolution::GenerationRecord;
 
 /// Primitive-selection probabilities of each state type (Thesis Figure 4.10): now, as a
@@ -34,8 +34,9 @@ const TWO_COLUMNS: u16 = 90;
 const SMALL: f64 = 0.005;
 
 impl View for Policy {
-    fn caption(&self, _desk: &Desk) -> String {
-        String::from("primitive selected, mean of the better half")
+    fn caption(&self, desk: &Desk) -> String {
+        let separator = desk.look.signs.separator;
+        format!("primitives selected {separator} mean of the better half")
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
@@ -127,6 +128,9 @@ fn draw_type(
             put(buffer, line(bar_row), (1, 0), text, look.style(Paint::Dim));
         }
     }
+    if area.height + 1 == WITH_CURVES {
+        draw_course(desk, record, index, line(2), buffer);
+    }
     if area.height >= WITH_CURVES {
         let below = Rect {
             y: area.y + 2,
@@ -135,6 +139,32 @@ fn draw_type(
         };
         chart(desk, index).draw(look, below, buffer);
     }
+}
+
+/// The course of the primitive subtask that is selected most now.
+fn draw_course(
+    desk: &Desk,
+    record: &GenerationRecord,
+    index: usize,
+    line: Rect,
+    buffer: &mut Buffer,
+) {
+    let Some(of) = &record.selection_probabilities[index] else {
+        return;
+    };
+    let Some((name, _)) = of.iter().max_by(|a, b| a.1.total_cmp(b.1)) else {
+        return;
+    };
+    let records = desk.model().generations().iter();
+    let shares = records.filter_map(|record| {
+        let of = record.selection_probabilities.get(index)?.as_ref()?;
+        of.get(name).copied()
+    });
+    let shares: Vec<_> = shares.collect();
+    let columns = usize::from(line.width.saturating_sub(2));
+    let text = sparkline(&shares, [0.0, 1.0], columns, desk.look.signs);
+    let style = desk.look.style(paint(desk, name));
+    put(buffer, line, (1, 0), &text, style);
 }
 
 /// The paint of a primitive subtask.

@@ -14,7 +14,7 @@ use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put};
-use crate::dashboard::scene::{draw_mark, in_proportion};
+use crate::dashboard::scene::{Scene, draw_mark, draw_scene, in_proportion};
 use crate::dashboard::stage::Subject;
 use crate::lab::specimen::{MapView, PolicyCell, PolicyMap};
 
@@ -118,7 +118,10 @@ impl Map {
 
     fn legend(&self, desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
         let look = &desk.look;
-        let key = |action| desk.keys.hint(action).map_or(String::new(), |(key, _)| key);
+        let keys = |action| {
+            let hint = desk.keys.hint(action, look.signs);
+            hint.map_or(String::new(), |(keys, _)| keys)
+        };
         let mut lines = Vec::new();
         if desk.scenery().grid.is_none() {
             let degrees = self.heading().to_degrees().round();
@@ -127,16 +130,14 @@ impl Map {
                 "heading {degrees:.0}{} {}",
                 look.signs.degrees, look.signs.headings[eighth]
             );
-            let keys = format!("{} {}", key(Action::Left), key(Action::Right));
-            lines.push(with_keys(desk, &text, &keys));
+            lines.push(with_keys(desk, &text, &keys(Action::Left)));
         }
         let variants = desk.bench.variants();
         if let Some(variant) = variants.get(self.variant) {
-            let keys = format!("{} {}", key(Action::Up), key(Action::Down));
-            lines.push(with_keys(desk, variant, &keys));
+            lines.push(with_keys(desk, variant, &keys(Action::Up)));
         }
         let mode = if self.by_value { "value" } else { "policy" };
-        lines.push(with_keys(desk, mode, &key(Action::Mode)));
+        lines.push(with_keys(desk, mode, &keys(Action::Mode)));
         lines.push(Line::default());
         match self.by_value {
             true => lines.extend(value_legend(desk, map)),
@@ -223,7 +224,10 @@ fn areas(desk: &Desk, area: Rect) -> (Rect, Rect) {
         width: area.width - legend,
         ..area
     };
-    let map = in_proportion(room, desk.scenery().extent);
+    let map = match desk.scenery().grid {
+        Some(_) => room,
+        None => in_proportion(room, desk.scenery().extent),
+    };
     let map = Rect { x: area.x, ..map };
     let legend = Rect {
         x: map.right() + 2,
@@ -255,6 +259,15 @@ impl View for Map {
         };
         let (place, legend) = areas(desk, area);
         let scenery = desk.scenery();
+        if scenery.grid.is_some() {
+            let scene = Scene {
+                marks: &map.marks,
+                cells: Some(map),
+                ..Scene::default()
+            };
+            draw_scene(desk, &scene, place, buffer);
+            return draw_lines(look, &self.legend(desk, map), 0, legend, buffer);
+        }
         let mut canvas = Canvas::new(look, place, [0.0, 0.0], scenery.extent);
         for [from, to] in &scenery.walls {
             canvas.line(*from, *to, Layer::Wall, Paint::Wall);

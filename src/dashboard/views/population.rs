@@ -3,13 +3,14 @@
 use std::fmt::Write;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
 use super::{View, nothing_yet, origin};
 use crate::dashboard::desk::{Chosen, Desk};
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, one_line, put};
+use crate::dashboard::mouse::line_at;
 use crate::evolution::RankedRecord;
 
 /// All individuals of a generation, best first.
@@ -186,6 +187,18 @@ impl Population {
         individuals
     }
 
+    /// The individuals that there is room for below the head, the selected one among them.
+    fn visible<'d>(&self, desk: &'d Desk, area: Rect) -> Vec<&'d RankedRecord> {
+        let sorted = self.sorted(desk);
+        let selected = desk.selected().map(|individual| individual.id);
+        let is_selected = |individual: &&RankedRecord| Some(individual.id) == selected;
+        let here = sorted.iter().position(is_selected).unwrap_or(0);
+        let rows = usize::from(area.height.saturating_sub(1));
+        let skipped = here.saturating_sub(rows / 2);
+        let skipped = skipped.min(sorted.len().saturating_sub(rows));
+        sorted.into_iter().skip(skipped).take(rows).collect()
+    }
+
     /// The heads of the columns; the one that the table is sorted by says so.
     fn draw_head(
         &self,
@@ -245,7 +258,11 @@ impl View for Population {
     fn caption(&self, desk: &Desk) -> String {
         desk.shown().map_or(String::new(), |record| {
             let count = record.individuals.len();
-            format!("{count} individuals of generation {}", record.generation)
+            let separator = desk.look.signs.separator;
+            format!(
+                "generation {} {separator} {count} individuals",
+                record.generation
+            )
         })
     }
 
@@ -253,16 +270,10 @@ impl View for Population {
         if desk.shown().is_none() {
             return nothing_yet(desk, area, buffer);
         }
-        let sorted = self.sorted(desk);
         let columns = columns(area.width);
         self.draw_head(desk, &columns, area, buffer);
         let selected = desk.selected().map(|individual| individual.id);
-        let is_selected = |individual: &&RankedRecord| Some(individual.id) == selected;
-        let here = sorted.iter().position(is_selected).unwrap_or(0);
-        let rows = usize::from(area.height.saturating_sub(1));
-        let skipped = here.saturating_sub(rows / 2);
-        let skipped = skipped.min(sorted.len().saturating_sub(rows));
-        for (row, individual) in sorted.iter().skip(skipped).take(rows).enumerate() {
+        for (row, individual) in self.visible(desk, area).into_iter().enumerate() {
             let line = Rect {
                 y: area.y + 1 + row as u16,
                 height: 1,
@@ -272,7 +283,7 @@ impl View for Population {
                 desk,
                 &columns,
                 individual,
-                is_selected(individual),
+                Some(individual.id) == selected,
                 line,
                 buffer,
             );
@@ -280,7 +291,7 @@ impl View for Population {
     }
 
     fn hints(&self) -> &'static [Action] {
-        &[Action::Down, Action::Up, Action::Sort, Action::Reverse]
+        &[Action::Down, Action::Sort, Action::Reverse]
     }
 
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
@@ -297,6 +308,18 @@ impl View for Population {
             _ => return None,
         }
         Some(Vec::new())
+    }
+
+    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> bool {
+        let line = line_at(at, area, 1);
+        let visible = self.visible(desk, area);
+        let clicked = line.and_then(|line| visible.get(line)).map(|one| one.id);
+        let selected = desk.selected().map(|individual| individual.id);
+        let Some(id) = clicked.filter(|id| Some(*id) != selected) else {
+            return false;
+        };
+        desk.chosen = Chosen::Id(id);
+        true
     }
 
     fn csv(&self, desk: &Desk) -> Option<String> {

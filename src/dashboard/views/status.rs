@@ -9,7 +9,7 @@ use super::View;
 use crate::dashboard::desk::{Desk, Mode};
 use crate::dashboard::header::activity;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, one_line, put};
+use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put};
 use crate::lab::Ending;
 
 /// What the run is doing.
@@ -36,7 +36,11 @@ impl View for Status {
         let mut row = 0;
         for (name, value, paint) in facts(desk, room) {
             put(buffer, area, (1, row), name, look.style(Paint::Dim));
-            let value = fitted(&one_line(&value), room, look.signs);
+            let value = match name {
+                // Of a path the end tells more.
+                "folder" => fitted_end(&one_line(&value), room, look.signs),
+                _ => fitted(&one_line(&value), room, look.signs),
+            };
             put(buffer, area, (VALUES, row), &value, look.style(paint));
             row += 1;
         }
@@ -79,10 +83,10 @@ fn facts(desk: &Desk, room: usize) -> Vec<Fact> {
     };
     let evolution = &scenario.evolution;
     let survivors = format!(
-        "{}, of which {} live on",
+        "{}, {} of them live on",
         evolution.population_size, evolution.reproduced
     );
-    let trials = format!("{}, the last half scored", evolution.trials_per_generation);
+    let trials = format!("{}, last half scored", evolution.trials_per_generation);
     facts.extend([
         ("checkpoint", saved, Paint::Text),
         ("scenario", scenario.name.clone(), Paint::Text),
@@ -107,10 +111,7 @@ fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
     if let Some(progress) = model.progress() {
         let (lived, all) = (progress.lived, progress.population);
         let (name, text) = match progress.generation {
-            0 => (
-                "learning",
-                String::from("the primitive subtasks are trained"),
-            ),
+            0 => ("learning", String::from("primitive subtasks")),
             _ => ("individuals", bar(desk, lived, all, room)),
         };
         facts.push((name, text, Paint::Text));
@@ -121,7 +122,7 @@ fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
     }
     match model.ending() {
         Some(Ending::Converged) => {
-            let text = String::from("converged, one structure");
+            let text = String::from("one structure is left");
             facts.push(("ended", text, Paint::Good));
         }
         Some(Ending::GenerationLimit) => {

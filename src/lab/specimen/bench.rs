@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use super::policy_map::{MapView, PolicyMap, policy_map};
 use super::profile::{Profile, profiles};
 use super::rollout::{Rollout, WorldRollout};
-use super::{Bench, Specimen};
+use super::{Bench, Specimen, Start};
 use crate::evolution::{Experiment, State};
 use crate::lab::checkpoint::Checkpoint;
 use crate::lab::checkpoint_error::CheckpointError;
@@ -105,10 +105,26 @@ impl<W: Scenic + 'static> Bench for WorldBench<W> {
         &self.variants
     }
 
-    fn rollout(&'static self, specimen: Specimen<'_>, number: u64) -> Box<dyn Rollout> {
+    fn rollout(
+        &'static self,
+        specimen: Specimen<'_>,
+        number: u64,
+        start: Option<Start>,
+    ) -> Box<dyn Rollout> {
         let id = specimen.individual.id;
         let rng = stream(self.seed, number, id, Purpose::Watching);
-        Box::new(WorldRollout::new(&self.experiment, specimen, rng))
+        Box::new(WorldRollout::new(&self.experiment, specimen, start, rng))
+    }
+
+    fn can_begin(&self, start: Start) -> bool {
+        let mut rng = stream(self.seed, 0, 0, Purpose::Watching);
+        let Start {
+            at,
+            heading,
+            variant,
+        } = start;
+        let world = &self.experiment.world;
+        world.state_at(at, heading, variant, &mut rng).is_some()
     }
 
     fn profiles(&self, specimen: Specimen<'_>, node: usize) -> Vec<Profile> {

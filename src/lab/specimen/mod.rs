@@ -12,6 +12,7 @@ mod lineage;
 mod policy_map;
 mod profile;
 mod rollout;
+mod start;
 
 pub use archive::{Archive, ArchiveError};
 pub use bench::bench;
@@ -19,6 +20,7 @@ pub use lineage::{Ancestor, Lineage, lineage};
 pub use policy_map::{MapView, PolicyCell, PolicyMap};
 pub use profile::{Curve, Profile, Quantity};
 pub use rollout::{Rollout, RolloutStatus, StepTrace};
+pub use start::{Start, StartError};
 
 use super::checkpoint::Checkpoint;
 use super::checkpoint_error::CheckpointError;
@@ -77,8 +79,17 @@ pub trait Bench: Send + Sync {
     fn variants(&self) -> &[String];
 
     /// A copy of an individual that acts and learns for somebody to watch. `number`
-    /// tells its random stream from those of other rollouts of the same individual.
-    fn rollout(&'static self, specimen: Specimen<'_>, number: u64) -> Box<dyn Rollout>;
+    /// tells its random stream from those of other rollouts of the same individual. All
+    /// trials begin at `start`, if it is given and can be; else where chance puts them.
+    fn rollout(
+        &'static self,
+        specimen: Specimen<'_>,
+        number: u64,
+        start: Option<Start>,
+    ) -> Box<dyn Rollout>;
+
+    /// Whether the agent can be there.
+    fn can_begin(&self, start: Start) -> bool;
 
     /// The learned values of a node, over the inputs that it looks at.
     fn profiles(&self, specimen: Specimen<'_>, node: usize) -> Vec<Profile>;

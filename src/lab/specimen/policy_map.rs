@@ -32,6 +32,8 @@ pub struct PolicyCell {
     pub probability: f64,
     /// V(root).
     pub value: f32,
+    /// The primitive subtask and its action that it would choose without exploring.
+    pub greedy: Option<(SubtaskId, usize)>,
 }
 
 /// What an individual would do at the centres of equal cells.
@@ -123,6 +125,7 @@ fn policy_cell<W: Scenic>(
         primitive,
         probability: total / SAMPLES as f64,
         value,
+        greedy: policy.greedy(),
     };
     Some((cell, first))
 }

@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::Specimen;
+use super::policy_map::{MapView, PolicyMap, policy_map};
+use super::{Specimen, Start};
 use crate::evolution::{Experiment, TrialRecord};
 use crate::learning::{Agent, Explanation, Observer, Trial};
 use crate::random::Stream;
@@ -35,6 +36,11 @@ pub trait Rollout: Send {
 
     /// The present temperature of each node; `None` for primitive ones.
     fn temperatures(&self) -> Vec<Option<f32>>;
+
+    /// What the agent would do in each cell, with what it has learned so far, while all but
+    /// its place is as it is now; `None` where the world has no cells, and when the task is
+    /// done.
+    fn cells(&self) -> Option<PolicyMap>;
 }
 
 /// How a rollout is getting on.
@@ -110,6 +116,7 @@ pub(super) struct WorldRollout<W: Scenic + 'static> {
     experiment: &'static Experiment<W>,
     agent: Agent<'static, W>,
     trial: Trial<W::State>,
+    start: Option<Start>,
     rng: Stream,
     composite: Vec<bool>,
     status: RolloutStatus,
@@ -119,13 +126,13 @@ impl<W: Scenic> WorldRollout<W> {
     pub(super) fn new(
         experiment: &'static Experiment<W>,
         specimen: Specimen<'_>,
+        start: Option<Start>,
         mut rng: Stream,
     ) -> Self {
         let hierarchy = specimen.individual.hierarchy.clone();
         let composite: Vec<_> = hierarchy.values().iter().map(Option::is_some).collect();
         let mut agent = experiment.agent(hierarchy, specimen.skills.clone());
-        let start = experiment.world.draw_start(&mut rng);
-        let trial = agent.begin(&start, &mut rng);
+        let trial = begin(&experiment.world, &mut agent, start, &mut rng);
         let mut rollout = Self {
             status: RolloutStatus {
                 trial: 0,
@@ -141,6 +148,7 @@ impl<W: Scenic> WorldRollout<W> {
             experiment,
             agent,
             trial,
+            start,
             rng,
             composite,
         };
@@ -232,8 +240,8 @@ impl<W: Scenic> Rollout for WorldRollout<W> {
     }
 
     fn begin_trial(&mut self) {
-        let start = self.experiment.world.draw_start(&mut self.rng);
-        self.trial = self.agent.begin(&start, &mut self.rng);
+        let world = &self.experiment.world;
+        self.trial = begin(world, &mut self.agent, self.start, &mut self.rng);
         self.note_beginning();
     }
 
@@ -250,5 +258,31 @@ impl<W: Scenic> Rollout for WorldRollout<W> {
         nodes
             .map(|(node, composite)| composite.then(|| self.agent.temperature(node)))
             .collect()
+    }
+    fn cells(&self) -> Option<PolicyMap> {
+        let world = &self.experiment.world;
+        let [columns, rows] = world.scenery().grid?;
+        let view = MapView {
+            heading: 0.0,
+            variant: self.snapshot().variant?,
+            columns,
+            rows,
+        };
+        Some(policy_map(world, &mut self.agent.policy(), view, 0))
+    }
+}
+
+/// Begins a trial at the start that is given, if the agent can be there, else at one drawn
+/// by chance.
+fn begin<W: Scenic>(
+    world: &W,
+    agent: &mut Agent<'static, W>,
+    start: Option<Start>,
+    rng: &mut Stream,
+) -> Trial<W::State> {
+    let given = start.and_then(|start| world.state_at(start.at, start.heading, start.variant, rng));
+    match given {
+        Some(state) => agent.begin_in(state),
+        None => agent.begin(&world.draw_start(rng), rng),
     }
 }

@@ -35,6 +35,7 @@ impl Scenic for ForagingWorld {
                 label: String::from("nest"),
                 at: arena.nest.into(),
             }],
+            moves: Vec::new(),
             time_step_s: Some(self.time_step_s),
         }
     }
@@ -72,6 +73,11 @@ impl Scenic for ForagingWorld {
             rays: self.measured_rays(state),
             readings: self.readings(state),
             state_type: self.state_type(state),
+            variant: match task {
+                Task::EmptyHanded => Some(0),
+                Task::Carrying(_) => Some(1),
+                Task::Delivered(_) => None,
+            },
         }
     }
 

@@ -1,10 +1,12 @@
 //! What there is to see of the taxi problem.
 
-use super::catalogue::{AT_DESTINATION, AT_PASSENGER, RIDING, WAITING};
+use std::f64::consts::PI;
+
+use super::catalogue::{AT_DESTINATION, AT_PASSENGER, EAST, NORTH, RIDING, SOUTH, WAITING, WEST};
 use super::{Passenger, Percept, TaxiState, TaxiWorld};
 use crate::random::Stream;
 use crate::worlds::grid::{Cells, outer_walls};
-use crate::worlds::scene::{Mark, Role, Scale, Scenery, Scenic, Snapshot, Sweep};
+use crate::worlds::scene::{Mark, Move, Role, Scale, Scenery, Scenic, Snapshot, Sweep};
 use crate::worlds::{Probe, StateType, SubtaskId, World};
 
 /// Radius of the taxi in cells.
@@ -37,6 +39,12 @@ impl Scenic for TaxiWorld {
                     at: cells.centre(cell),
                 })
                 .collect(),
+            moves: [(EAST, 0.0), (NORTH, 0.5), (WEST, 1.0), (SOUTH, 1.5)]
+                .map(|(subtask, half_turns)| Move {
+                    subtask,
+                    heading: half_turns * PI,
+                })
+                .into(),
             time_step_s: None,
         }
     }
@@ -71,6 +79,7 @@ impl Scenic for TaxiWorld {
             rays: Vec::new(),
             readings: cells.readings(usize::from(state.taxi)),
             state_type: self.state_type(state),
+            variant: self.variant(state),
         }
     }
 
@@ -151,6 +160,17 @@ impl TaxiWorld {
         let waiting = stands.clone().map(Passenger::Waiting);
         let places = waiting.chain(std::iter::once(Passenger::Riding));
         places.flat_map(move |place| stands.clone().map(move |destination| (place, destination)))
+    }
+
+    fn variant(&self, state: &TaxiState) -> Option<usize> {
+        let rides = state.passenger == Passenger::Boarded;
+        let passenger = if rides {
+            Passenger::Riding
+        } else {
+            state.passenger
+        };
+        let task = (passenger, state.destination);
+        self.tasks().position(|known| known == task)
     }
 
     fn words(&self, passenger: Passenger, destination: u8) -> String {

@@ -6,7 +6,7 @@ mod selection;
 mod values;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
 use super::View;
@@ -15,6 +15,7 @@ use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, put, width};
+use crate::dashboard::mouse::line_at;
 use crate::dashboard::stage::Subject;
 use crate::hierarchy::{draw, to_dot};
 use crate::lab::specimen::{Lineage, Profile, lineage};
@@ -29,7 +30,7 @@ const ROOMY: (u16, u16) = (110, 32);
 ///
 /// ```text
 ///  ╭ Inspector  individual 362, generation 26 ──────────────────────────╮
-///  │ ▸ Root          τ 0.41 │ ▸Values   Selection   Lineage              │
+///  │ ▸ Root      τ 0.41 12× │ ▸Values   Selection   Lineage              │
 ///  │   ├─ FindBattery τ ... │ C~+V over surroundings, state type 1 (1/4) │
 ///  │   │  └─ Avoid          │                 FindBattery   Wander       │
 ///  │   └─ ApproachBattery   │ open               ▸ -3.21    -5.40        │
@@ -88,6 +89,7 @@ impl Inspector {
         let hierarchy = &specimen.individual.hierarchy;
         let drawn = draw(hierarchy.tree(), desk.catalogue(), look.signs.tree);
         let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 2;
+        let visits = desk.stage.rollout().map(|rollout| &rollout.status().visits);
         let values = drawn.into_iter().zip(hierarchy.values()).enumerate();
         values
             .map(|(node, (line, values))| {
@@ -99,13 +101,16 @@ impl Inspector {
                 };
                 let pen = Pen::new(look).text(format!("{sign} "), paint);
                 let pen = pen.cell(&line, room, paint);
-                match values {
-                    Some(values) => {
-                        let tau = format!("{} {}", look.signs.tau, number(values.temperature));
-                        pen.text(tau, Paint::Dim).line()
-                    }
-                    None => pen.line(),
-                }
+                let tau = values.as_ref().map_or(String::new(), |values| {
+                    format!("{} {}", look.signs.tau, number(values.temperature))
+                });
+                let count = visits.and_then(|visits| visits.get(node));
+                let count = count.map_or(String::new(), |count| {
+                    format!("{count}{}", look.signs.times)
+                });
+                pen.cell(&tau, 7, Paint::Dim)
+                    .right(&count, 6, Paint::Text)
+                    .line()
             })
             .collect()
     }
@@ -142,11 +147,26 @@ impl Inspector {
         }
     }
 
+    /// The area of the tree, and how many of its lines are above it.
+    fn place_of_tree(&self, desk: &Desk, area: Rect) -> (Rect, usize) {
+        let lines = self.tree_lines(desk);
+        let count = |lines: usize| u16::try_from(lines).unwrap_or(u16::MAX);
+        if Self::is_roomy(area) {
+            let [left, _] = columns(area, 2 * area.width / 5);
+            let [above, _] = rows(left, (count(lines.len()) + 1).min(left.height / 2));
+            return (above, 0);
+        }
+        let widest = lines.iter().map(Line::width).max().unwrap_or(0);
+        let [left, _] = columns(area, count(widest).min(area.width * 9 / 20) + 1);
+        let skipped = self.node.saturating_sub(usize::from(left.height / 2));
+        (left, skipped.min(last_start(lines.len(), left.height)))
+    }
+
     /// Everything at once.
     fn draw_roomy(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let [left, right] = columns(area, 2 * area.width / 5);
-        let tree = u16::try_from(self.tree_lines(desk).len()).unwrap_or(u16::MAX);
-        let [above, selection] = rows(left, (tree + 1).min(left.height / 2));
+        let (above, _) = self.place_of_tree(desk, area);
+        let [_, selection] = rows(left, above.height);
         let [values, lineage] = rows(right, right.height * 3 / 5);
         draw_lines(&desk.look, &self.tree_lines(desk), 0, above, buffer);
         for (page, area) in [
@@ -162,12 +182,8 @@ impl Inspector {
     /// The tree and one page.
     fn draw_narrow(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let lines = self.tree_lines(desk);
-        let widest = lines.iter().map(Line::width).max().unwrap_or(0);
-        let tree = u16::try_from(widest)
-            .unwrap_or(u16::MAX)
-            .min(area.width * 2 / 5);
-        let [left, right] = columns(area, tree + 1);
-        let skipped = self.node.saturating_sub(usize::from(left.height / 2));
+        let (left, skipped) = self.place_of_tree(desk, area);
+        let [_, right] = columns(area, left.width);
         draw_lines(&desk.look, &lines, skipped, left, buffer);
         let mut column = 0;
         for page in Page::ALL {
@@ -260,7 +276,6 @@ impl View for Inspector {
     fn hints(&self) -> &'static [Action] {
         &[
             Action::Down,
-            Action::Up,
             Action::Mode,
             Action::NextPanel,
             Action::ViewCompare,
@@ -287,6 +302,15 @@ impl View for Inspector {
             _ => return None,
         }
         Some(Vec::new())
+    }
+
+    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> bool {
+        let (tree, skipped) = self.place_of_tree(desk, area);
+        let nodes = desk.stage.tree().map_or(0, |tree| tree.nodes().len());
+        let line = line_at(at, tree, 0).map(|line| line + skipped);
+        let clicked = line.filter(|&node| node < nodes && node != self.node);
+        self.node = clicked.unwrap_or(self.node);
+        clicked.is_some()
     }
 
     fn prepare(&mut self, desk: &Desk) {
@@ -339,7 +363,8 @@ impl View for Inspector {
     }
 
     fn lesson(&self) -> &'static str {
-        "An individual, taken apart. Move along its tree. Values: what the subtask under the\n\
+        "An individual, taken apart. Move along its tree, beside it the temperatures that it came\n\
+         with and how often each subtask was invoked in the rollout. Values: what the subtask under the\n\
          cursor has learned - Q of a primitive subtask's actions (Thesis Figure 4.3); C~, C, V\n\
          of a composite one's children, and C~+V, which it chooses by - over the inputs it\n\
          looks at. Selection: in which primitive subtask its policy ends, for each state type.\n\

@@ -10,7 +10,7 @@ use super::chart;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, put};
-use crate::dashboard::views::lines::{Pen, draw_lines, number};
+use crate::dashboard::views::lines::{Pen, decimals, draw_lines, fixed};
 use crate::lab::specimen::{Profile, Quantity};
 use crate::worlds::scene::Scale;
 
@@ -114,9 +114,8 @@ impl Shelf {
 
 /// The keys that turn to another place.
 fn keys(desk: &Desk) -> String {
-    let keys = [Action::Left, Action::Right].map(|action| desk.keys.hint(action));
-    let keys: Vec<_> = keys.into_iter().flatten().map(|(key, _)| key).collect();
-    keys.join("/")
+    let hint = desk.keys.hint(Action::Left, desk.look.signs);
+    hint.map_or(String::new(), |(keys, _)| keys)
 }
 
 fn words(quantity: Quantity) -> &'static str {
@@ -141,6 +140,7 @@ fn table(desk: &Desk, profile: &Profile, labels: &[String], columns: usize) -> V
         let name = fitted(&curve.label, each - 1, look.signs);
         head = head.right(&name, each, Paint::Title);
     }
+    let digits = decimals(curves.iter().flat_map(|curve| curve.values.iter().copied()));
     let rows = labels.iter().enumerate().map(|(row, text)| {
         let mut pen = Pen::new(look).cell(text, label, Paint::Text);
         let best = largest(profile, row);
@@ -149,7 +149,7 @@ fn table(desk: &Desk, profile: &Profile, labels: &[String], columns: usize) -> V
                 .values
                 .get(row)
                 .copied()
-                .map(number)
+                .map(|value| fixed(value, digits))
                 .unwrap_or_default();
             pen = match Some(index) == best && curves.len() > 1 {
                 true => pen.right(&format!("{}{text}", look.signs.pointer), each, Paint::Best),

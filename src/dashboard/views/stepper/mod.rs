@@ -16,7 +16,7 @@ use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Look, Paint, fitted, put};
-use crate::dashboard::scene::{draw_scene, in_proportion};
+use crate::dashboard::scene::{Scene, draw_scene};
 use crate::hierarchy::{Tree, to_dot};
 use crate::lab::specimen::StepTrace;
 use crate::worlds::{Catalogue, Kind};
@@ -115,9 +115,12 @@ impl Areas {
     fn of(area: Rect, readings: u16) -> Self {
         let room = area.height.saturating_sub(readings);
         // Cells are about twice as high as wide: a square arena.
-        let left = (2 * room)
-            .clamp(24, 24.max(area.width * 2 / 5))
-            .min(area.width);
+        // Names and numbers need their columns first.
+        let widest = match area.width {
+            width if width < 100 => width / 3,
+            width => width * 2 / 5,
+        };
+        let left = (2 * room).clamp(24, 24.max(widest)).min(area.width);
         let arena = Rect {
             width: left,
             height: room.min(left.div_ceil(2)),
@@ -201,8 +204,8 @@ impl View for Stepper {
             (false, _) => format!("{}x", desk.stage.speed()),
         };
         format!(
-            "individual {} {separator} trial {} {separator} step {} {separator} {state}",
-            subject.id, trace.trial, trace.step
+            "individual {}, generation {} {separator} trial {} {separator} step {} {separator} {state}",
+            subject.id, subject.generation, trace.trial, trace.step
         )
     }
 
@@ -219,10 +222,13 @@ impl View for Stepper {
         };
         let rows = shown.trace.after.readings.len() + 2;
         let areas = Areas::of(area, u16::try_from(rows).unwrap_or(u16::MAX));
-        let scenery = desk.scenery();
-        let place = in_proportion(areas.arena, scenery.extent);
-        draw_scene(desk, scenery, Some(&shown.trace.after), place, buffer);
-        let readings = readings::lines(&shown, usize::from(areas.readings.width));
+        let scene = Scene {
+            snapshot: Some(&shown.trace.after),
+            trail: desk.stage.trail(self.back),
+            ..Scene::default()
+        };
+        draw_scene(desk, &scene, areas.arena, buffer);
+        let readings = readings::lines(desk, &shown, usize::from(areas.readings.width));
         draw_lines(look, &readings, 0, areas.readings, buffer);
         let lines = self.lines(desk, &shown, areas.stack);
         draw_lines(look, &lines, self.scroll, areas.stack, buffer);

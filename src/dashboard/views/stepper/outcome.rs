@@ -4,7 +4,7 @@ use ratatui::text::Line;
 
 use super::{Detail, Shown};
 use crate::dashboard::look::Paint;
-use crate::dashboard::views::lines::{Pen, number};
+use crate::dashboard::views::lines::{Pen, number, told_apart};
 use crate::learning::{Change, Lesson, Update};
 
 /// Reward, terminations and updates.
@@ -114,9 +114,10 @@ fn change<'l>(shown: &Shown<'l>, pen: Pen<'l>, name: &str, change: Change) -> Pe
     if change.before == change.after {
         return pen.text(number(change.after), Paint::Text);
     }
-    pen.text(number(change.before), Paint::Text)
+    let [before, after] = told_apart(change.before, change.after);
+    pen.text(before, Paint::Text)
         .text(format!(" {} ", shown.look.signs.becomes), Paint::Dim)
-        .text(number(change.after), Paint::Title)
+        .text(after, Paint::Title)
 }
 
 /// The updates with their N and errors: all, or the first ones and the last of many.
@@ -145,7 +146,10 @@ fn updates(shown: &Shown<'_>, updates: &[Update], listed: usize) -> Vec<Line<'st
 }
 
 fn signed(value: f32) -> String {
-    let text = number(value);
+    let text = match value.abs() {
+        size if (1e-9..0.0005).contains(&size) => format!("{value:.0e}"),
+        _ => number(value),
+    };
     match text.starts_with('-') || value == 0.0 {
         true => text,
         false => format!("+{text}"),

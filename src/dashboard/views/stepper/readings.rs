@@ -3,7 +3,9 @@
 use ratatui::text::Line;
 
 use super::Shown;
+use crate::dashboard::desk::Desk;
 use crate::dashboard::look::Paint;
+use crate::dashboard::views::case;
 use crate::dashboard::views::lines::Pen;
 
 /// Columns of a reading.
@@ -16,7 +18,7 @@ const VALUE: usize = 7;
 ///  proximity +0deg mm        350    312
 ///  target angle deg            -  -12.4
 /// ```
-pub(super) fn lines(shown: &Shown<'_>, columns: usize) -> Vec<Line<'static>> {
+pub(super) fn lines(desk: &Desk, shown: &Shown<'_>, columns: usize) -> Vec<Line<'static>> {
     let trace = shown.trace;
     let both = columns >= 34;
     let name = columns.saturating_sub(if both { 2 * VALUE } else { VALUE });
@@ -41,6 +43,9 @@ pub(super) fn lines(shown: &Shown<'_>, columns: usize) -> Vec<Line<'static>> {
             false => pen,
         };
         lines.push(pen.right(&value(after.value), VALUE, Paint::Title).line());
+    }
+    if let Some(case) = case(desk, &trace.after) {
+        lines.push(Pen::new(shown.look).text(case, Paint::Notice).line());
     }
     if let Some(carried) = &trace.after.carries {
         let text = format!("carries {carried}");

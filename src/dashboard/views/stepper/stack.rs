@@ -4,29 +4,41 @@ use ratatui::text::Line;
 
 use super::{Detail, Shown};
 use crate::dashboard::look::Paint;
-use crate::dashboard::views::lines::{Pen, number, percent};
-use crate::learning::{ActionChoice, Choice, Level, Rule};
+use crate::dashboard::views::lines::{Pen, decimals, fixed, number, percent};
+use crate::learning::{ActionChoice, Choice, Explanation, Level, Rule};
 
-/// Columns of a number.
-const NUMBER: usize = 8;
-/// Columns of a probability.
-const PERCENT: usize = 6;
+/// Columns below which numbers have a digit less.
+const NARROW: usize = 60;
 
 /// How wide the parts of a line are.
 #[derive(Clone, Copy)]
 struct Widths {
     name: usize,
+    number: usize,
+    percent: usize,
     bar: usize,
+    /// Digits after the point.
+    digits: usize,
 }
 
 impl Widths {
-    fn of(columns: usize) -> Self {
-        let rest = columns.saturating_sub(4 * NUMBER + PERCENT);
+    fn of(columns: usize, explanation: &Explanation) -> Self {
+        let choices = explanation.levels.iter().flat_map(|level| &level.choices);
+        let values = choices.flat_map(|choice| [choice.preference(), choice.value, choice.c]);
+        let digits = decimals(values.chain(explanation.action.values.iter().copied()));
+        let (number, percent, digits) = match columns < NARROW {
+            true => (7, 5, digits - 1),
+            false => (8, 6, digits),
+        };
+        let rest = columns.saturating_sub(4 * number + percent);
         // Names are up to 15 long and indented by up to 4.
         let name = rest.min(24);
         Self {
             name,
             bar: rest.saturating_sub(name + 2).min(20),
+            number,
+            percent,
+            digits,
         }
     }
 }
@@ -35,20 +47,20 @@ impl Widths {
 ///
 /// ```text
 ///                        C~+V       V      C~       C     p
-///  Root  chooses by softmax, τ 0.812
+///  Root  V -3.612  chooses by softmax, τ 0.812
 ///  ▸ FindBattery       -3.612  -3.212  -0.400  -0.400  88 %  ━━━━━━━━
 ///    Wander            -5.401  -0.300  -5.101  -5.101  12 %  ━
-///   FindBattery  chooses by softmax, τ 0.900
+///   FindBattery  V -3.212  chooses by softmax, τ 0.900
 ///   ▸ Avoid            ...
 ///    Avoid  acts
 ///    ▸ (600,600)                -0.300                  74 %  ━━━━━━━
 /// ```
 pub(super) fn lines(shown: &Shown<'_>, columns: usize, detail: Detail) -> Vec<Line<'static>> {
-    let widths = Widths::of(columns);
     let explanation = &shown.trace.explanation;
+    let widths = Widths::of(columns, explanation);
     let mut lines = vec![head(shown, widths)];
     for (depth, level) in explanation.levels.iter().enumerate() {
-        lines.push(title(shown, depth, level));
+        lines.push(title(shown, widths, depth, level));
         if level.chose || detail.standing {
             let choices = level.choices.iter();
             lines.extend(choices.map(|choice| child(shown, widths, depth, level, choice)));
@@ -62,12 +74,12 @@ pub(super) fn lines(shown: &Shown<'_>, columns: usize, detail: Detail) -> Vec<Li
 fn head(shown: &Shown<'_>, widths: Widths) -> Line<'static> {
     let mut pen = Pen::new(shown.look).to(widths.name);
     for name in ["C~+V", "V", "C~", "C"] {
-        pen = pen.right(name, NUMBER, Paint::Dim);
+        pen = pen.right(name, widths.number, Paint::Dim);
     }
-    pen.right("p", PERCENT, Paint::Dim).line()
+    pen.right("p", widths.percent, Paint::Dim).line()
 }
 
-fn title(shown: &Shown<'_>, depth: usize, level: &Level) -> Line<'static> {
+fn title(shown: &Shown<'_>, widths: Widths, depth: usize, level: &Level) -> Line<'static> {
     let signs = shown.look.signs;
     let tau = format!("{} {}", signs.tau, number(level.temperature));
     let (what, paint) = match (level.chose, level.rule) {
@@ -77,9 +89,13 @@ fn title(shown: &Shown<'_>, depth: usize, level: &Level) -> Line<'static> {
         }
         (true, rule) => (format!("{}, {tau}", how(shown, rule)), Paint::Text),
     };
+    let value = level.value().map_or(String::new(), |value| {
+        format!("  V {}", fixed(value, widths.digits))
+    });
     Pen::new(shown.look)
         .to(depth)
         .text(shown.name(level.node), Paint::Title)
+        .text(value, Paint::Title)
         .text(if level.invoked { "  invoked, " } else { "  " }, paint)
         .text(what, paint)
         .line()
@@ -118,7 +134,7 @@ fn child(
         name,
     );
     for value in [choice.preference(), choice.value, choice.c_tilde, choice.c] {
-        pen = pen.right(&number(value), NUMBER, values);
+        pen = pen.right(&fixed(value, widths.digits), widths.number, values);
     }
     probability(pen, widths, choice.probability, is_active, values).line()
 }
@@ -154,7 +170,7 @@ fn probability(
 ) -> Pen<'_> {
     let share = f64::from(probability);
     let bar = if is_chosen { Paint::Good } else { Paint::Dim };
-    pen.right(&percent(share), PERCENT, paint)
+    pen.right(&percent(share), widths.percent, paint)
         .text("  ", Paint::Text)
         .bar(share, widths.bar, bar)
 }
@@ -178,7 +194,7 @@ fn action(
             format!("  acts {how}, {} {}", signs.tau, number(action.temperature)),
             Paint::Text,
         );
-    let above = widths.name + 2 * NUMBER - 1;
+    let above = widths.name + 2 * widths.number - 1;
     let title = match title.column() < above {
         true => title.to(above).text("Q", Paint::Dim),
         false => title,
@@ -196,9 +212,9 @@ fn action(
             false => (Paint::Text, Paint::Text),
         };
         let pen = named(shown, widths, depth, is_chosen, label, name)
-            .to(widths.name + NUMBER)
-            .right(&number(*value), NUMBER, numbers)
-            .to(widths.name + 4 * NUMBER);
+            .to(widths.name + widths.number)
+            .right(&fixed(*value, widths.digits), widths.number, numbers)
+            .to(widths.name + 4 * widths.number);
         lines.push(probability(pen, widths, *share, is_chosen, numbers).line());
     }
     lines

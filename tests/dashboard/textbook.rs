@@ -1,0 +1,153 @@
+//! Worlds of cells on the screen: the numbers of thesis 2.2.2, values and greedy actions.
+
+use std::sync::OnceLock;
+
+use maxq_lab::hierarchy::Glyphs::{Ascii, Unicode};
+use maxq_lab::lab::specimen::Start;
+use maxq_lab::scenario::Scenario;
+
+use super::frames::assert_looks;
+use super::recorded::{Recorded, cells};
+
+const HAND_MADE: &str = "(Root (Get (NavigateToPassenger North South East West) Pickup) \
+     (Put (NavigateToDestination North South East West) Putdown))";
+
+/// The README's recipe: nothing varies, so that all that happens is learning.
+fn learned() -> &'static Recorded {
+    static RUN: OnceLock<Recorded> = OnceLock::new();
+    RUN.get_or_init(|| {
+        let population = vec![format!("{HAND_MADE:?}"); 6].join(",");
+        let settings = [
+            String::from("evolution.variation=none"),
+            String::from("evolution.population_size=6"),
+            String::from("evolution.generation_limit=40"),
+            format!("evolution.initial_population=[{population}]"),
+        ];
+        let scenario = Scenario::load("taxi").unwrap();
+        Recorded::new(&scenario.with_settings(&settings).unwrap())
+    })
+}
+
+/// The state of thesis Figure 2.6, from which the passenger is one cell to the north.
+const FIGURE_2_6: &str = "from R to B at 0,3";
+
+/// The numbers after a name in the stepper's table.
+fn row(text: &str, name: &str) -> Vec<f64> {
+    let mut lines = text.lines().filter_map(|line| line.split_once(name));
+    let after = lines
+        .next()
+        .unwrap_or_else(|| panic!("{name} in\n{text}"))
+        .1;
+    let words = after.split_whitespace();
+    words.map_while(|word| word.parse().ok()).collect()
+}
+
+/// V(Root, s1) = 10 and its decomposition (thesis 2.2.2), read off the frame.
+#[test]
+fn the_numbers_of_the_taxi_are_seen() {
+    for (glyphs, size) in [
+        (Unicode, (120, 40)),
+        (Unicode, (200, 60)),
+        (Ascii, (120, 40)),
+    ] {
+        let start = Start::read(FIGURE_2_6, learned().bench).unwrap();
+        let mut screen = learned().screen_from(Some(start), "dark", glyphs, size);
+        screen.press("t .");
+        let text = screen.text();
+        assert_eq!(row(&text, " Root  V"), [10.0], "{text}");
+        // C~+V, V, C~, C and the probability in percent.
+        assert_eq!(
+            row(&text, " Get  "),
+            [10.0, -2.0, 12.0, 12.0, 100.0],
+            "{text}"
+        );
+        assert_eq!(row(&text, " Get  V"), [-2.0], "{text}");
+        let navigate = row(&text, " NavigateToPassenger  ");
+        assert_eq!(navigate[..4], [-2.0, -1.0, -1.0, -1.0], "{text}");
+        assert_eq!(row(&text, " NavigateToPassenger  V"), [-1.0], "{text}");
+        assert_eq!(
+            row(&text, " North  ")[..4],
+            [-1.0, -1.0, 0.0, 0.0],
+            "{text}"
+        );
+        assert!(text.contains("from R to B"), "{text}");
+        // The next trial begins there too.
+        screen.press("N .");
+        assert_eq!(row(&screen.text(), " Root  V"), [10.0]);
+    }
+}
+
+#[test]
+fn values_and_greedy_actions_stand_in_the_cells() {
+    let start = Start::read(FIGURE_2_6, learned().bench).unwrap();
+    for (name, theme, glyphs, size, keys) in [
+        ("cells_taxi_80x24", "dark", Unicode, (80, 24), "2"),
+        ("cells_taxi_80x24_ascii", "mono", Ascii, (80, 24), "2"),
+        ("cells_taxi_overview_80x24", "dark", Unicode, (80, 24), "1"),
+        (
+            "cells_taxi_overview_120x40",
+            "mono",
+            Unicode,
+            (120, 40),
+            "1",
+        ),
+        ("cells_taxi_120x40", "light", Unicode, (120, 40), "2"),
+        (
+            "cells_taxi_stepper_80x24",
+            "dark",
+            Unicode,
+            (80, 24),
+            "t . . . ,",
+        ),
+    ] {
+        let mut screen = learned().screen_from(Some(start), theme, glyphs, size);
+        screen.press("space . .");
+        screen.press(keys);
+        assert_looks(name, &screen);
+    }
+    let mut screen = learned().screen_from(Some(start), "dark", Unicode, (120, 40));
+    screen.press("space 2");
+    let cells = screen
+        .0
+        .app()
+        .desk()
+        .stage
+        .rollout()
+        .unwrap()
+        .cells()
+        .unwrap();
+    assert!((cells.cell(0, 1).unwrap().value - 10.0).abs() < 0.001);
+    assert!(screen.text().contains(" 10.0"), "{}", screen.text());
+}
+
+/// A world of cells that is not the taxi's, wider than high, with a cliff in it.
+#[test]
+fn the_cliff_has_room_in_the_overview() {
+    let cliff = cells("cliff");
+    for (name, glyphs) in [
+        ("cells_cliff_overview", Unicode),
+        ("cells_cliff_ascii", Ascii),
+    ] {
+        let mut screen = cliff.screen("high-contrast", glyphs, (80, 24));
+        screen.wait(1.0);
+        assert_looks(name, &screen);
+    }
+}
+
+/// What is not to be had is said with what is.
+#[test]
+fn a_state_that_cannot_be_is_refused() {
+    for wrong in [
+        "from R to X at 0,3",
+        "from R to B",
+        "from R to B at 5,0",
+        "",
+    ] {
+        let error = Start::read(wrong, learned().bench).unwrap_err().to_string();
+        assert!(error.contains(&format!("{wrong:?}")), "{error}");
+        assert!(
+            error.contains("from R to G") && error.contains("5,5"),
+            "{error}"
+        );
+    }
+}
