@@ -8,7 +8,7 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use maxq_lab::dashboard::keys::KeyMap;
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
-use maxq_lab::dashboard::{App, Input, Mode, Still, ViewId};
+use maxq_lab::dashboard::{App, Desk, Input, Mode, Still, ViewId};
 use maxq_lab::hierarchy::Glyphs;
 use maxq_lab::lab::specimen::{Archive, bench};
 use maxq_lab::lab::{Recording, RunOptions, start};
@@ -30,13 +30,9 @@ fn frames(criterion: &mut Criterion) {
         .unwrap();
     let bench = bench(scenario, 1).unwrap();
     let look = Look::new(Theme::all(), "dark", Signs::of(Glyphs::Unicode));
-    let app = App::new(
-        bench,
-        String::from("run"),
-        Mode::Replay,
-        look,
-        KeyMap::default(),
-    );
+    let folder_name = String::from("run");
+    let desk = Desk::new(bench, folder_name, Mode::Replay, look, KeyMap::default());
+    let app = App::new(desk);
     let mut still = Still::new(app, Archive::new(bench, &folder, None));
     still.update(Input::Resize(200, 60));
     for event in Recording::read(&folder).unwrap().events {

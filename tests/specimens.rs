@@ -104,7 +104,8 @@ fn rollouts_have_streams_of_their_own() {
 fn a_trial_that_is_over_stays_until_the_next_step() {
     let run = finished();
     let state = run.archive().latest().unwrap();
-    let mut rollout = run.bench.rollout(Specimen::at(&state, 0, None).unwrap(), 0);
+    let specimen = Specimen::at(&state, 0).unwrap();
+    let mut rollout = run.bench.rollout(specimen, 0, None);
     let last = loop {
         let trace = rollout.step().unwrap();
         if trace.ended.is_some() {

@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::appearance::Appearance;
 use super::output::{self, Done};
 use crate::dashboard::keys::Key;
-use crate::dashboard::{App, FrameFormat, Input, Mode, Still, ViewId, render};
+use crate::dashboard::{App, Desk, FrameFormat, Input, Mode, Still, ViewId, render};
 use crate::lab::Recording;
 use crate::lab::specimen::{Archive, Start, bench};
 
@@ -103,7 +103,7 @@ pub(super) fn main(args: &Args) -> Done {
     let start = start
         .transpose()
         .map_err(|error| format!("--start: {error}"))?;
-    let app = App::new(bench, folder, Mode::Replay, look, key_map).beginning_at(start);
+    let app = App::new(Desk::new(bench, folder, Mode::Replay, look, key_map)).beginning_at(start);
     let mut still = Still::new(app, Archive::new(bench, &args.folder, None));
     let Size(columns, rows) = args.size;
     still.update(Input::Resize(columns, rows));

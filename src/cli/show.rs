@@ -13,7 +13,7 @@ use crate::dashboard::keys::KeyMap;
 use crate::dashboard::look::Look;
 use crate::dashboard::session::{Exit, Session, Source};
 use crate::dashboard::terminal::{Terminal, is_terminal};
-use crate::dashboard::{App, Mode, RunsTable};
+use crate::dashboard::{App, Desk, Mode, RunsTable};
 use crate::lab::specimen::{Archive, Bench, Start};
 
 /// How the dashboard looks.
@@ -124,7 +124,7 @@ impl Outfit {
         };
         let name = folder.display().to_string();
         let (look, keys) = (self.look.clone(), self.keys.clone());
-        let app = App::new(what, name, mode, look, keys).beginning_at(self.start);
+        let app = App::new(Desk::new(what, name, mode, look, keys)).beginning_at(self.start);
         let archive = Archive::new(what, folder, controls);
         let session = Session::new(app, archive, source, folder, terminal, self.fps)?;
         Ok(session)

@@ -6,18 +6,18 @@ use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::desk::{Chosen, Desk, Mode};
+use super::desk::{Chosen, Desk};
 use super::export;
 use super::header;
 use super::input::{Effect, Input};
-use super::keys::{Action, Key, KeyMap, Scope};
+use super::keys::{Action, Key, Scope};
 use super::look::{Look, Paint, put};
 use super::overlay::{self, Overlay};
 use super::panel::panel;
 use super::steering::{Steered, steer};
 use super::views::{self, View, ViewId, panels};
 use crate::lab::Event;
-use crate::lab::specimen::{Bench, Start};
+use crate::lab::specimen::Start;
 
 /// Smallest size, in columns and rows, at which there is something to see.
 pub const SMALLEST: (u16, u16) = (40, 12);
@@ -32,18 +32,11 @@ pub struct App {
 }
 
 impl App {
-    /// A dashboard over a run that has not told anything yet; `folder` is its folder, for
-    /// people.
+    /// A dashboard over what lies on a desk.
     #[must_use]
-    pub fn new(
-        bench: &'static dyn Bench,
-        folder: String,
-        mode: Mode,
-        look: Look,
-        keys: KeyMap,
-    ) -> Self {
+    pub fn new(desk: Desk) -> Self {
         Self {
-            desk: Desk::new(bench, folder, mode, look, keys),
+            desk,
             views: views::all(),
             view: ViewId::Overview,
             overlay: None,
@@ -298,7 +291,14 @@ impl App {
             Action::Faster => desk.stage.change_speed(true),
             Action::Slower => desk.stage.change_speed(false),
             Action::Restart => desk.stage.restart(),
-            Action::NextTrial => desk.stage.next_trial(),
+            Action::NextTrial => {
+                desk.stage.next_trial();
+                if let Some(rollout) = desk.stage.rollout() {
+                    let text =
+                        format!("trial {} begins with the next step", rollout.status().trial);
+                    desk.say(text);
+                }
+            }
             Action::Mark => desk.mark(),
             Action::Theme => {
                 desk.look.next_theme();

@@ -32,6 +32,7 @@ pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, area: Rect, buffer: &mu
         return;
     };
     let values = scene.cells.and_then(PolicyMap::values);
+    let decimals = decimals(values, lattice.inside(0, 0));
     for (column, row) in lattice.cells() {
         let place = lattice.inside(column, row);
         let cell = scene.cells.and_then(|map| map.cell(column, row));
@@ -48,8 +49,10 @@ pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, area: Rect, buffer: &mu
         let content = Content {
             signs: signs(look, scenery, scene, centre),
             action: cell.and_then(|cell| action(desk, cell)),
-            value: cell.map(|cell| cell.value),
-            share: share.unwrap_or(0.0),
+            value: cell.zip(share).map(|(cell, share)| match decimals {
+                Some(decimals) => format!("{:.decimals$}", cell.value),
+                None => ((share * 10.0).clamp(0.0, 9.0) as u32).to_string(),
+            }),
         };
         match is_hazard(scenery, centre) {
             true => fill(look, place, buffer),
@@ -58,6 +61,21 @@ pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, area: Rect, buffer: &mu
     }
     lattice.draw_walls(look, &scenery.walls, buffer);
     lattice.draw_trail(look, &scene.trail, buffer);
+}
+
+/// Digits after the point of the values; `None` where cells have room for no more than one
+/// digit in all.
+fn decimals(values: Option<[f32; 2]>, cell: Rect) -> Option<usize> {
+    // In a single row stand an action and some signs besides.
+    let taken = if cell.height > 1 { 0 } else { 4 };
+    let room = usize::from(cell.width).saturating_sub(taken);
+    let fits = |decimals: &usize| {
+        let widths = values?.map(|value| format!("{value:.decimals$}").len());
+        Some(widths.into_iter().all(|width| width <= room))
+    };
+    [1, 0]
+        .into_iter()
+        .find(|decimals| fits(decimals) == Some(true))
 }
 
 fn same_cell(at: [f64; 2], centre: [f64; 2]) -> bool {
@@ -119,9 +137,7 @@ fn letter(desk: &Desk, subtask: SubtaskId) -> char {
 struct Content<'s> {
     signs: Vec<Sign<'s>>,
     action: Option<String>,
-    value: Option<f32>,
-    /// The value's place between the lowest and the highest.
-    share: f32,
+    value: Option<String>,
 }
 
 impl Content<'_> {
@@ -129,32 +145,29 @@ impl Content<'_> {
         let (columns, rows) = (usize::from(place.width), place.height);
         let (bold, plain) = (look.style(Paint::Title), look.style(Paint::Text));
         let action = self.action.as_deref().unwrap_or("");
-        let number = self.number(columns).unwrap_or_else(|| self.level());
+        let value = self.value.as_deref().unwrap_or("");
         // From the right edge; in high cells everything is centred.
-        let at = |text: &str, row: u16| {
+        let left = |text: &str| {
             let free = columns.saturating_sub(width(text));
-            let left = if rows > 2 { free.div_ceil(2) } else { free };
-            (left as u16, row)
+            (if rows > 2 { free.div_ceil(2) } else { free }) as u16
         };
         if rows > 1 {
             let middle = if rows > 2 { (rows - 1) / 2 } else { 0 };
-            put(buffer, place, at(action, middle), action, bold);
-            put(buffer, place, at(&number, middle + 1), &number, plain);
-            return self.draw_signs(place, buffer);
-        }
-        let signs = self.signs.len().min(columns.saturating_sub(1).max(1));
-        let number = match columns.saturating_sub(signs + width(action)) {
-            0 => String::new(),
-            room => match self.number(room.saturating_sub(1)) {
-                Some(number) => format!(" {number}"),
-                None => self.level(),
-            },
-        };
-        if signs < columns {
-            let start = at(&format!("{action}{number}"), 0);
-            let (column, row) = start;
-            let after = put(buffer, place, start, action, bold);
-            put(buffer, place, (after.max(column), row), &number, plain);
+            put(buffer, place, (left(action), middle), action, bold);
+            put(buffer, place, (left(value), middle + 1), value, plain);
+        } else {
+            let signs = self.signs.len().min(columns.saturating_sub(1).max(1));
+            let room = columns.saturating_sub(signs + width(action));
+            let value = match width(value) {
+                digits if digits > 1 && digits < room => format!(" {value}"),
+                1 if room > 0 => value.to_owned(),
+                _ => String::new(),
+            };
+            let column = left(&format!("{action}{value}"));
+            if signs < columns {
+                let column = put(buffer, place, (column, 0), action, bold);
+                put(buffer, place, (column, 0), &value, plain);
+            }
         }
         self.draw_signs(place, buffer);
     }
@@ -167,18 +180,5 @@ impl Content<'_> {
         for (sign, style) in &self.signs[skipped..] {
             column = put(buffer, place, (column, 0), sign, *style);
         }
-    }
-
-    /// The value with as many digits as there are columns; `None` if there is no room.
-    fn number(&self, columns: usize) -> Option<String> {
-        let value = self.value?;
-        let texts = [format!("{value:.1}"), format!("{value:.0}")];
-        texts.into_iter().find(|text| width(text) <= columns)
-    }
-
-    /// The value as a digit.
-    fn level(&self) -> String {
-        let level = (self.share * 10.0).clamp(0.0, 9.0) as u32;
-        self.value.map_or(String::new(), |_| level.to_string())
     }
 }

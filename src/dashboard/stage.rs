@@ -1,6 +1,7 @@
 //! The stage: a rollout of the individual that is looked at.
 
 use std::collections::VecDeque;
+use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -37,6 +38,12 @@ pub struct Subject {
     pub generation: u64,
     /// The individual.
     pub id: u64,
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "individual {}, generation {}", self.id, self.generation)
+    }
 }
 
 /// A rollout of the individual that is looked at, on a copy with a random stream of its

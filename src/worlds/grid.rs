@@ -2,7 +2,10 @@
 //!
 //! Cells are numbered row by row from the upper left; lengths are in cells, y upwards.
 
-use super::scene::{Reading, Scale};
+use std::f64::consts::FRAC_PI_2;
+
+use super::SubtaskId;
+use super::scene::{Move, Reading, Scale};
 
 /// The cells of a rectangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +71,16 @@ pub(super) fn outer_walls(cells: Cells) -> [[[f64; 2]; 2]; 4] {
     let [width, height] = cells.extent();
     let corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
     std::array::from_fn(|i| [corners[i], corners[(i + 1) % 4]])
+}
+
+/// The subtasks that move an agent east, north, west, south.
+pub(super) fn moves(subtasks: [SubtaskId; 4]) -> Vec<Move> {
+    let quarters = subtasks.into_iter().zip(0_u8..);
+    let moves = quarters.map(|(subtask, quarter)| Move {
+        subtask,
+        heading: f64::from(quarter) * FRAC_PI_2,
+    });
+    moves.collect()
 }
 
 #[cfg(test)]

@@ -3,12 +3,8 @@
 use maxq_lab::dashboard::Effect;
 use maxq_lab::hierarchy::Glyphs::{Ascii, Unicode};
 
-use super::frames::assert_looks;
+use super::frames::{LARGE, MIDDLE, SMALL, assert_shots};
 use super::recorded::{Screen, cells, foraging};
-
-const SMALL: (u16, u16) = (80, 24);
-const MIDDLE: (u16, u16) = (120, 40);
-const LARGE: (u16, u16) = (200, 60);
 
 fn screen() -> Screen {
     foraging().screen("dark", Unicode, MIDDLE)
@@ -16,7 +12,7 @@ fn screen() -> Screen {
 
 #[test]
 fn the_views_of_an_individual() {
-    for (name, theme, glyphs, size, keys) in [
+    let shots = [
         ("stepper_80x24_dark", "dark", Unicode, SMALL, "t . ."),
         ("stepper_120x40_dark", "dark", Unicode, MIDDLE, "t . . ."),
         ("stepper_200x60_light", "light", Unicode, LARGE, "t . . ."),
@@ -44,28 +40,18 @@ fn the_views_of_an_individual() {
             MIDDLE,
             "[ [ [ [ c M j",
         ),
-    ] {
-        let mut screen = foraging().screen(theme, glyphs, size);
-        screen.wait(2.0);
-        screen.press(keys);
-        screen.wait(0.1);
-        assert_looks(name, &screen);
-    }
+    ];
+    assert_shots(foraging(), [2.0, 0.1], &shots);
 }
 
 #[test]
 fn individuals_of_other_worlds() {
-    let taxi = cells("taxi");
-    for (name, keys) in [
-        ("stepper_taxi", "t . ."),
-        ("inspector_taxi", "i j"),
-        ("map_taxi", "m j"),
-    ] {
-        let mut screen = taxi.screen("dark", Unicode, MIDDLE);
-        screen.press(keys);
-        screen.wait(0.1);
-        assert_looks(name, &screen);
-    }
+    let shots = [
+        ("stepper_taxi", "dark", Unicode, MIDDLE, "t . ."),
+        ("inspector_taxi", "dark", Unicode, MIDDLE, "i j"),
+        ("map_taxi", "dark", Unicode, MIDDLE, "m j"),
+    ];
+    assert_shots(&cells("taxi"), [0.0, 0.1], &shots);
 }
 
 /// Step and trial of the step that is shown.
@@ -98,6 +84,50 @@ fn keys_step_forth_and_back_through_a_trial() {
     assert_eq!(shown(&screen), (trial, step + 4), "it is halted");
     screen.press("N .");
     assert_eq!(shown(&screen), (trial + 1, 1));
+}
+
+/// A step of the past is shown with the way that led to it, not with what came after.
+#[test]
+fn the_trail_is_that_of_the_step_shown() {
+    let mut screen = screen();
+    screen.press("t . . . .");
+    let stage = &screen.0.app().desk().stage;
+    let whole = stage.trail(0);
+    for back in 0..4 {
+        let (trail, step) = (stage.trail(back), stage.trace(back).unwrap());
+        assert_eq!(trail.len(), step.step as usize + 1);
+        assert_eq!(trail[..], whole[..trail.len()]);
+        assert_eq!(trail.last(), Some(&step.after.at));
+    }
+    // A trial that is over has left what was recorded of it.
+    screen.press("N .");
+    let stage = &screen.0.app().desk().stage;
+    assert_eq!(stage.trail(0).len(), 2);
+    assert_eq!(stage.trail(1).last(), whole.last());
+}
+
+/// Whoever travels through time reads of whom and when everything is.
+#[test]
+fn captions_name_individual_and_generation() {
+    let mut screen = screen();
+    screen.press("[ [ space");
+    let subject = screen.0.app().desk().stage.subject().unwrap();
+    let (id, generation) = (subject.id, subject.generation);
+    assert_eq!(generation, 4);
+    for (keys, caption) in [
+        ("1", format!("id {id}, gen {generation}")),
+        ("t .", format!("individual {id}, generation {generation}")),
+        ("i", format!("individual {id}, generation {generation}")),
+        ("m", format!("individual {id}, generation {generation}")),
+        ("c", format!("individual {id}, generation {generation}")),
+    ] {
+        screen.press(keys);
+        assert!(
+            screen.text().contains(&caption),
+            "{caption} in\n{}",
+            screen.text()
+        );
+    }
 }
 
 #[test]
@@ -149,11 +179,12 @@ fn the_marked_individual_is_what_others_are_compared_with() {
     let marked = screen.0.app().desk().selected().unwrap().id;
     screen.press("b c");
     assert_eq!(screen.0.app().desk().rival().unwrap().id, marked);
+    let text = screen.text();
     assert!(
-        screen
-            .text()
-            .contains(&format!("individual {marked} of generation 6, marked"))
+        text.contains(&format!("individual {marked}, generation 6")),
+        "{text}"
     );
+    assert!(text.contains("marked: rank"), "{text}");
     // Who is marked is not compared with himself.
     screen.press("j j j");
     assert_eq!(screen.0.app().desk().selected().unwrap().id, marked);

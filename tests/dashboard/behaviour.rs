@@ -109,6 +109,31 @@ fn a_frozen_view_holds_while_evolution_goes_on() {
     assert_eq!(generation(&screen), 4);
 }
 
+/// The hierarchy beside a rollout that was halted is that of the rollout, however far evolution
+/// has gone on.
+#[test]
+fn arena_and_hierarchy_speak_of_one_individual() {
+    let mut screen = live();
+    screen.0.update(Input::Resize(120, 40));
+    screen.press("space");
+    let subject = screen.0.app().desk().stage.subject().unwrap();
+    for event in &foraging().events[4..] {
+        screen.tell(event.clone());
+        screen.wait(1.0);
+    }
+    let desk = screen.0.app().desk();
+    assert_eq!(desk.stage.subject(), Some(subject));
+    let (generation, looked_at) = desk.looked_at().unwrap();
+    assert_eq!((generation, looked_at.id), (subject.generation, subject.id));
+    let caption = format!("id {}, gen {}", subject.id, subject.generation);
+    assert_eq!(
+        screen.text().matches(&caption).count(),
+        2,
+        "{}",
+        screen.text()
+    );
+}
+
 #[test]
 fn evolution_is_steered() {
     let mut screen = live();
@@ -194,6 +219,18 @@ fn selecting_puts_an_individual_on_the_stage() {
     assert_eq!(desk.shown().unwrap().individuals[1].id, second.id);
     screen.press("b");
     assert_eq!(screen.0.app().desk().stage.subject(), Some(best));
+}
+
+/// In a run that was opened from a table of runs, going back is what is named.
+#[test]
+fn the_way_back_is_named() {
+    let mut screen = screen();
+    assert!(screen.text().contains("q quit"));
+    screen.press("6");
+    assert!(screen.text().contains("↑↓ select"), "{}", screen.text());
+    let opened = foraging().blank_within();
+    assert!(opened.text().contains("esc back"), "{}", opened.text());
+    assert!(!opened.text().contains("q quit"));
 }
 
 #[test]

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use maxq_lab::dashboard::Mode;
-use maxq_lab::hierarchy::Glyphs::{Ascii, Unicode};
+use maxq_lab::hierarchy::Glyphs::{self, Ascii, Unicode};
 use maxq_lab::lab::Event;
 use ratatui::buffer::{Buffer, Cell};
 
-use super::recorded::{Screen, cells, foraging};
+use super::recorded::{Recorded, Screen, cells, foraging};
 
 /// The characters of a frame, then a letter for the style of each, then what the letters
 /// stand for.
@@ -59,29 +59,40 @@ pub fn assert_frame(name: &str, frame: &Buffer) {
     });
 }
 
-const SMALL: (u16, u16) = (80, 24);
-const MIDDLE: (u16, u16) = (120, 40);
-const LARGE: (u16, u16) = (200, 60);
+pub const SMALL: (u16, u16) = (80, 24);
+pub const MIDDLE: (u16, u16) = (120, 40);
+pub const LARGE: (u16, u16) = (200, 60);
 
-#[test]
-fn the_overview() {
-    for (name, theme, glyphs, size) in [
-        ("overview_80x24_dark", "dark", Unicode, SMALL),
-        ("overview_120x40_dark", "dark", Unicode, MIDDLE),
-        ("overview_200x60_dark", "dark", Unicode, LARGE),
-        ("overview_120x40_mono", "mono", Unicode, MIDDLE),
-        ("overview_80x24_ascii", "mono", Ascii, SMALL),
-        ("overview_200x60_ascii", "light", Ascii, LARGE),
-    ] {
-        let mut screen = foraging().screen(theme, glyphs, size);
-        screen.wait(2.0);
+/// Name, theme, signs and size of a frame, and the keys that lead to it.
+pub type Shot = (&'static str, &'static str, Glyphs, (u16, u16), &'static str);
+
+/// Takes frames of a run some seconds after it was opened, and some after the keys.
+pub fn assert_shots(run: &Recorded, [before, after]: [f64; 2], shots: &[Shot]) {
+    for (name, theme, glyphs, size, keys) in shots {
+        let mut screen = run.screen(theme, *glyphs, *size);
+        screen.wait(before);
+        screen.press(keys);
+        screen.wait(after);
         assert_looks(name, &screen);
     }
 }
 
 #[test]
+fn the_overview() {
+    let shots = [
+        ("overview_80x24_dark", "dark", Unicode, SMALL, ""),
+        ("overview_120x40_dark", "dark", Unicode, MIDDLE, ""),
+        ("overview_200x60_dark", "dark", Unicode, LARGE, ""),
+        ("overview_120x40_mono", "mono", Unicode, MIDDLE, ""),
+        ("overview_80x24_ascii", "mono", Ascii, SMALL, ""),
+        ("overview_200x60_ascii", "light", Ascii, LARGE, ""),
+    ];
+    assert_shots(foraging(), [2.0, 0.0], &shots);
+}
+
+#[test]
 fn the_views() {
-    for (name, theme, glyphs, size, keys) in [
+    let shots = [
         ("arena_80x24_dark", "dark", Unicode, SMALL, "2"),
         ("arena_120x40_mono", "mono", Unicode, MIDDLE, "2"),
         ("arena_80x24_ascii", "high-contrast", Ascii, SMALL, "2"),
@@ -101,12 +112,8 @@ fn the_views() {
             "6 s s s s S",
         ),
         ("status_80x24_dark", "dark", Unicode, SMALL, "7"),
-    ] {
-        let mut screen = foraging().screen(theme, glyphs, size);
-        screen.press(keys);
-        screen.wait(2.0);
-        assert_looks(name, &screen);
-    }
+    ];
+    assert_shots(foraging(), [0.0, 2.0], &shots);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use maxq_lab::dashboard::keys::KeyMap;
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
-use maxq_lab::dashboard::{App, Effect, Input, Mode, Still};
+use maxq_lab::dashboard::{App, Desk, Effect, Input, Mode, Still};
 use maxq_lab::hierarchy::Glyphs;
 use maxq_lab::lab::specimen::{Archive, Bench, Start, bench};
 use maxq_lab::lab::{Event, Recording};
@@ -42,11 +42,23 @@ impl Recorded {
         self.blank_from(None, mode, theme, glyphs)
     }
 
+    /// The same, opened from somewhere that going back leads to.
+    pub fn blank_within(&self) -> Screen {
+        let app = self.app(Mode::Replay, "dark", Glyphs::Unicode);
+        self.still(app.within(true))
+    }
+
     fn blank_from(&self, start: Option<Start>, mode: Mode, theme: &str, glyphs: Glyphs) -> Screen {
+        self.still(self.app(mode, theme, glyphs).beginning_at(start))
+    }
+
+    fn app(&self, mode: Mode, theme: &str, glyphs: Glyphs) -> App {
         let look = Look::new(Theme::all(), theme, Signs::of(glyphs));
         let folder = format!("runs/{}-seed1", self.bench.scenario().name);
-        let app = App::new(self.bench, folder, mode, look, KeyMap::default());
-        let app = app.beginning_at(start);
+        App::new(Desk::new(self.bench, folder, mode, look, KeyMap::default()))
+    }
+
+    fn still(&self, app: App) -> Screen {
         Screen(Still::new(
             app,
             Archive::new(self.bench, &self.folder, None),

@@ -22,7 +22,7 @@ pub use source::{Live, Source};
 
 use super::keys::Key;
 use super::terminal::{Job, Terminal};
-use super::{App, Effect, Input, Mouse};
+use super::{App, Desk, Effect, Input, Mouse};
 use crate::lab::specimen::{Archive, bench};
 use crate::lab::{Life, Manifest, News};
 use loader::{Loaded, Loader};
@@ -206,7 +206,7 @@ impl<'s> Session<'s> {
             .and_then(|bench| {
                 let archive = Archive::new(bench, self.folder, None);
                 self.loader = Loader::start(archive).map_err(|error| error.to_string())?;
-                Ok(App::new(bench, folder, mode, look, keys).within(within))
+                Ok(App::new(Desk::new(bench, folder, mode, look, keys)).within(within))
             });
         match turned {
             Ok(app) => {

@@ -53,7 +53,7 @@ impl View for Arena {
         let cells = rollout.and_then(|rollout| rollout.cells());
         let scene = Scene {
             snapshot: snapshot.as_ref(),
-            trail: rollout.map_or(Vec::new(), |rollout| trail(rollout)),
+            trail: rollout.map_or(Vec::new(), trail),
             cells: cells.as_ref(),
             ..Scene::default()
         };

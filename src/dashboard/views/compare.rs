@@ -24,8 +24,8 @@ use crate::worlds::SubtaskId;
 ///
 /// ```text
 ///  ╭ Comparison  structural difference -3 ────────────────────────────────╮
-///  │ individual 362, the selected one   individual 340, the marked one     │
-///  │ rank 1   128.6 steps               rank 4   141.2 steps               │
+///  │ individual 362, generation 26      individual 340, generation 26      │
+///  │ selected: rank 1, 128.6 steps      marked: rank 4, 141.2 steps        │
 ///  │   Root                               Root                             │
 ///  │   ├─ FindBattery                     ├─ FindBattery                   │
 ///  │ + │  └─ Avoid                      + │  └─ Wander                     │
@@ -109,18 +109,15 @@ fn unlike(tree: &Tree, other: &Tree) -> Vec<bool> {
 }
 
 impl Side<'_> {
-    fn lines(&self, desk: &Desk, role: &str, other: &Self) -> Vec<Line<'static>> {
+    fn lines(&self, desk: &Desk, role: &str, other: &Self, columns: usize) -> Vec<Line<'static>> {
         let look = &desk.look;
         let record = self.record;
         let steps = record.fitness_steps as f64 / record.trials.len().max(1) as f64;
         let generation = desk.shown().map_or(0, |shown| shown.generation);
-        let head = format!(
-            "individual {} of generation {generation}, {role}",
-            record.id
-        );
+        let head = format!("individual {}, generation {generation}", record.id);
         let delivered = record.trials.iter().filter(|trial| trial.delivered).count();
         let facts = [
-            format!("rank {}, {steps:.1} steps a trial", record.rank),
+            format!("{role}: rank {}, {steps:.1} steps", record.rank),
             format!("{delivered} of {} trials done", record.trials.len()),
             format!(
                 "{} composite, {} primitive subtasks",
@@ -140,12 +137,12 @@ impl Side<'_> {
             lines.push(Pen::new(look).text(sign, paint).text(line, paint).line());
         }
         lines.push(Line::default());
-        lines.extend(self.selection_lines(desk, other));
+        lines.extend(self.selection_lines(desk, other, columns));
         lines
     }
 
     /// Selection probabilities, marked where they are far from the other's.
-    fn selection_lines(&self, desk: &Desk, other: &Self) -> Vec<Line<'static>> {
+    fn selection_lines(&self, desk: &Desk, other: &Self, columns: usize) -> Vec<Line<'static>> {
         let look = &desk.look;
         let Some(selection) = self.selection else {
             return Vec::new();
@@ -166,7 +163,12 @@ impl Side<'_> {
                     false => (" ", Paint::Text),
                 };
                 let name = desk.catalogue().subtask(primitive).name;
-                pen = pen.text(format!("{sign}{name} {}  ", percent(share)), paint);
+                let text = format!("{sign}{name} {}", percent(share));
+                if pen.column() + width(&text) > columns {
+                    lines.push(pen.line());
+                    pen = Pen::new(look).to(2);
+                }
+                pen = pen.text(text, paint).text("  ", Paint::Text);
             }
             lines.push(pen.line());
         }
@@ -199,12 +201,13 @@ impl View for Compare {
         };
         let role = match desk.marked == Some(other.record.id) {
             true => "marked",
-            false => "best of the others",
+            false => "next best",
         };
         let half = area.width / 2;
+        let columns = usize::from(half.saturating_sub(2));
         let sides = [
-            (0, one.lines(desk, "selected", &other)),
-            (half, other.lines(desk, role, &one)),
+            (0, one.lines(desk, "selected", &other, columns)),
+            (half, other.lines(desk, role, &one, columns)),
         ];
         for (x, lines) in sides {
             let side = Rect {

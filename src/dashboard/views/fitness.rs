@@ -5,7 +5,7 @@ use std::fmt::Write;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::{View, nothing_yet};
+use super::{THROUGH_TIME, View, nothing_yet};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Look, Paint, put};
@@ -75,13 +75,7 @@ impl View for Fitness {
     }
 
     fn hints(&self) -> &'static [Action] {
-        &[
-            Action::Earlier,
-            Action::Later,
-            Action::First,
-            Action::Follow,
-            Action::Play,
-        ]
+        THROUGH_TIME
     }
 
     fn csv(&self, desk: &Desk) -> Option<String> {

@@ -133,11 +133,16 @@ impl View for Hierarchy {
     }
 }
 
+/// Columns of a temperature and of a count.
+const TEMPERATURE: u16 = 6;
+const INVOKED: u16 = 8;
+
 /// What is told of each node, and where.
 struct Table {
     lines: Vec<String>,
-    /// Columns of state types, temperature and count; `None` where there is no room.
-    types: u16,
+    /// Columns of state types, temperature and count; `None` where there is no room. What
+    /// never changes gives way first.
+    types: Option<u16>,
     temperature: Option<u16>,
     invoked: Option<u16>,
     temperatures: Vec<Option<f32>>,
@@ -149,8 +154,10 @@ impl Table {
     fn of(desk: &Desk, individual: &RankedRecord, tree: &Tree, columns: u16) -> Self {
         let lines = draw(tree, desk.catalogue(), desk.look.signs.tree);
         let names = lines.iter().map(|line| width(line)).max().unwrap_or(0);
-        let types = u16::try_from(names).unwrap_or(u16::MAX).saturating_add(4);
-        let after = types.saturating_add(desk.catalogue().state_types.len() as u16 + 1);
+        let first = u16::try_from(names).unwrap_or(u16::MAX).saturating_add(4);
+        let types = first.saturating_add(desk.catalogue().state_types.len().max(5) as u16 + 1);
+        let all = types.saturating_add(TEMPERATURE + INVOKED) <= columns;
+        let after = if all { types } else { first };
         let on_stage = desk
             .stage
             .subject()
@@ -158,10 +165,10 @@ impl Table {
         let rollout = desk.stage.rollout().filter(|_| on_stage);
         Self {
             lines,
-            types,
-            temperature: Some(after).filter(|&column| column.saturating_add(7) <= columns),
-            invoked: Some(after.saturating_add(7))
-                .filter(|&column| column.saturating_add(8) <= columns),
+            types: all.then_some(first),
+            temperature: Some(after).filter(|column| column.saturating_add(TEMPERATURE) <= columns),
+            invoked: Some(after.saturating_add(TEMPERATURE))
+                .filter(|column| column.saturating_add(INVOKED) <= columns),
             temperatures: rollout
                 .map(|rollout| rollout.temperatures())
                 .unwrap_or_default(),
@@ -191,7 +198,9 @@ impl Table {
     fn draw_head(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let dim = desk.look.style(Paint::Dim);
         put(buffer, area, (2, 0), "subtask", dim);
-        put(buffer, area, (self.types, 0), "types", dim);
+        if let Some(column) = self.types {
+            put(buffer, area, (column, 0), "types", dim);
+        }
         if let Some(column) = self.temperature {
             put(buffer, area, (column + 4, 0), "T", dim);
         }
@@ -232,19 +241,17 @@ impl Table {
             (false, false) => Paint::Text,
         };
         put(buffer, area, (column, row), subtask.name, look.style(paint));
-        let types = catalogue
-            .types()
-            .map(|state_type| match subtask.active.contains(state_type) {
-                true => state_type.number().to_string(),
-                false => String::from(" "),
-            });
-        put(
-            buffer,
-            area,
-            (self.types, row),
-            &types.collect::<String>(),
-            dim,
-        );
+        if let Some(column) = self.types {
+            let types =
+                catalogue
+                    .types()
+                    .map(|state_type| match subtask.active.contains(state_type) {
+                        true => state_type.number().to_string(),
+                        false => String::from(" "),
+                    });
+            let types: String = types.collect();
+            put(buffer, area, (column, row), &types, dim);
+        }
         let [temperature, invoked] = self.numbers(node);
         if let Some(column) = self.temperature {
             put(

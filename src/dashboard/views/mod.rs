@@ -199,6 +199,26 @@ fn make(id: ViewId) -> Box<dyn View> {
     }
 }
 
+/// What leads through time, for the hint bars of views that show all generations.
+const THROUGH_TIME: &[Action] = &[
+    Action::Earlier,
+    Action::Later,
+    Action::First,
+    Action::Follow,
+    Action::Play,
+];
+
+/// Says why there is no individual to look at.
+fn nobody(desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    let text = desk
+        .stage
+        .refused()
+        .unwrap_or("no individual has lived yet");
+    let room = usize::from(area.width.saturating_sub(1));
+    let text = fitted(text, room, desk.look.signs);
+    put(buffer, area, (1, 0), &text, desk.look.style(Paint::Dim));
+}
+
 /// Says that there is nothing to see yet.
 fn nothing_yet(desk: &Desk, area: Rect, buffer: &mut Buffer) {
     let room = usize::from(area.width.saturating_sub(1));

@@ -35,7 +35,11 @@ pub(in crate::dashboard) fn panels(area: Rect, scenery: &Scenery) -> Vec<(ViewId
     // As wide as the world is for its height, cells being about twice as high as wide.
     let [width, height] = scenery.extent;
     let arena = f64::from(upper.saturating_sub(2)) * 2.0 * width / height;
-    let arena = (arena as u16 + 2).max(ARENA).min(area.width / 2);
+    let most = match area.width < WIDE {
+        true => area.width / 2,
+        false => area.width * 2 / 5,
+    };
+    let arena = (arena as u16 + 2).max(ARENA).min(most);
     if area.width < WIDE {
         let upper = [Constraint::Length(arena), Constraint::Fill(1)];
         let [arena, hierarchy] = columns(above, upper);

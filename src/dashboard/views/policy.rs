@@ -7,7 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::{View, letters, nothing_yet};
+use super::{THROUGH_TIME, View, letters, nothing_yet};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Paint, fitted, one_line, put, sparkline, width};
@@ -50,13 +50,7 @@ impl View for Policy {
     }
 
     fn hints(&self) -> &'static [Action] {
-        &[
-            Action::Earlier,
-            Action::Later,
-            Action::First,
-            Action::Follow,
-            Action::Play,
-        ]
+        THROUGH_TIME
     }
 
     fn csv(&self, desk: &Desk) -> Option<String> {

@@ -9,11 +9,11 @@ use ratatui::style::Modifier;
 use ratatui::text::Line;
 
 use super::lines::{Pen, draw_lines, number, percent};
-use super::{View, letters};
+use super::{View, letters, nobody};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put};
+use crate::dashboard::look::{Canvas, Layer, Paint};
 use crate::dashboard::scene::{Scene, draw_mark, draw_scene, in_proportion};
 use crate::dashboard::stage::Subject;
 use crate::lab::specimen::{MapView, PolicyCell, PolicyMap};
@@ -178,7 +178,10 @@ fn policy_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
                 .line()
         })
         .collect();
-    let note = "small letter: less than 2 in 3";
+    let note = match desk.scenery().grid {
+        Some(_) => "in the cells: the greedy action",
+        None => "small letter: less than 2 in 3",
+    };
     lines.push(Pen::new(&desk.look).text(note, Paint::Dim).line());
     lines
 }
@@ -240,22 +243,13 @@ fn areas(desk: &Desk, area: Rect) -> (Rect, Rect) {
 impl View for Map {
     fn caption(&self, desk: &Desk) -> String {
         let subject = desk.stage.subject();
-        subject.map_or(String::new(), |subject| {
-            let (id, generation) = (subject.id, subject.generation);
-            format!("individual {id}, generation {generation}")
-        })
+        subject.map_or(String::new(), |subject| subject.to_string())
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
         let Some(map) = self.map() else {
-            let text = desk
-                .stage
-                .refused()
-                .unwrap_or("no individual has lived yet");
-            let text = fitted(text, usize::from(area.width), look.signs);
-            put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
-            return;
+            return nobody(desk, area, buffer);
         };
         let (place, legend) = areas(desk, area);
         let scenery = desk.scenery();

@@ -1,12 +1,10 @@
 //! What there is to see of the cliff walk.
 
-use std::f64::consts::PI;
-
 use super::catalogue::{DOWN, LEFT, RIGHT, UP};
 use super::{CliffWorld, Percept};
 use crate::random::Stream;
-use crate::worlds::grid::outer_walls;
-use crate::worlds::scene::{Mark, Move, Role, Scenery, Scenic, Snapshot, Sweep};
+use crate::worlds::grid::{moves, outer_walls};
+use crate::worlds::scene::{Mark, Role, Scenery, Scenic, Snapshot, Sweep};
 use crate::worlds::{Probe, StateType, SubtaskId, World};
 
 /// Radius of the agent in cells.
@@ -31,12 +29,7 @@ impl Scenic for CliffWorld {
             grid: Some([self.cells.columns, self.cells.rows]),
             walls: outer_walls(self.cells).into(),
             places,
-            moves: [(RIGHT, 0.0), (UP, 0.5), (LEFT, 1.0), (DOWN, 1.5)]
-                .map(|(subtask, half_turns)| Move {
-                    subtask,
-                    heading: half_turns * PI,
-                })
-                .into(),
+            moves: moves([RIGHT, UP, LEFT, DOWN]),
             time_step_s: None,
         }
     }

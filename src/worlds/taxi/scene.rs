@@ -1,12 +1,10 @@
 //! What there is to see of the taxi problem.
 
-use std::f64::consts::PI;
-
 use super::catalogue::{AT_DESTINATION, AT_PASSENGER, EAST, NORTH, RIDING, SOUTH, WAITING, WEST};
 use super::{Passenger, Percept, TaxiState, TaxiWorld};
 use crate::random::Stream;
-use crate::worlds::grid::{Cells, outer_walls};
-use crate::worlds::scene::{Mark, Move, Role, Scale, Scenery, Scenic, Snapshot, Sweep};
+use crate::worlds::grid::{Cells, moves, outer_walls};
+use crate::worlds::scene::{Mark, Role, Scale, Scenery, Scenic, Snapshot, Sweep};
 use crate::worlds::{Probe, StateType, SubtaskId, World};
 
 /// Radius of the taxi in cells.
@@ -39,12 +37,7 @@ impl Scenic for TaxiWorld {
                     at: cells.centre(cell),
                 })
                 .collect(),
-            moves: [(EAST, 0.0), (NORTH, 0.5), (WEST, 1.0), (SOUTH, 1.5)]
-                .map(|(subtask, half_turns)| Move {
-                    subtask,
-                    heading: half_turns * PI,
-                })
-                .into(),
+            moves: moves([EAST, NORTH, WEST, SOUTH]),
             time_step_s: None,
         }
     }

@@ -6,15 +6,15 @@ mod selection;
 mod values;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::{Constraint, Layout, Position, Rect};
 use ratatui::text::Line;
 
-use super::View;
 use super::lines::{Pen, draw_lines, last_start, number};
+use super::{View, nobody};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, put, width};
+use crate::dashboard::look::{Paint, put, width};
 use crate::dashboard::mouse::line_at;
 use crate::dashboard::stage::Subject;
 use crate::hierarchy::{draw, to_dot};
@@ -88,7 +88,7 @@ impl Inspector {
         };
         let hierarchy = &specimen.individual.hierarchy;
         let drawn = draw(hierarchy.tree(), desk.catalogue(), look.signs.tree);
-        let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 2;
+        let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 1;
         let visits = desk.stage.rollout().map(|rollout| &rollout.status().visits);
         let values = drawn.into_iter().zip(hierarchy.values()).enumerate();
         values
@@ -157,7 +157,7 @@ impl Inspector {
             return (above, 0);
         }
         let widest = lines.iter().map(Line::width).max().unwrap_or(0);
-        let [left, _] = columns(area, count(widest).min(area.width * 9 / 20) + 1);
+        let [left, _] = columns(area, count(widest).min(area.width / 2));
         let skipped = self.node.saturating_sub(usize::from(left.height / 2));
         (left, skipped.min(last_start(lines.len(), left.height)))
     }
@@ -214,58 +214,31 @@ fn title(desk: &Desk, page: Page, has_focus: bool, area: Rect, buffer: &mut Buff
 
 /// Two columns with a gap, the left one so wide.
 fn columns(area: Rect, left: u16) -> [Rect; 2] {
-    let left = left.min(area.width);
-    let gap = 2.min(area.width - left);
-    [
-        Rect {
-            width: left,
-            ..area
-        },
-        Rect {
-            x: area.x + left + gap,
-            width: area.width - left - gap,
-            ..area
-        },
-    ]
+    let columns = [
+        Constraint::Length(left.min(area.width)),
+        Constraint::Fill(1),
+    ];
+    Layout::horizontal(columns).spacing(2).areas(area)
 }
 
 /// Two rows with a gap, the upper one so high.
 fn rows(area: Rect, above: u16) -> [Rect; 2] {
-    let above = above.min(area.height);
-    let gap = 1.min(area.height - above);
-    [
-        Rect {
-            height: above,
-            ..area
-        },
-        Rect {
-            y: area.y + above + gap,
-            height: area.height - above - gap,
-            ..area
-        },
-    ]
+    let rows = [
+        Constraint::Length(above.min(area.height)),
+        Constraint::Fill(1),
+    ];
+    Layout::vertical(rows).spacing(1).areas(area)
 }
 
 impl View for Inspector {
     fn caption(&self, desk: &Desk) -> String {
         let subject = desk.stage.subject();
-        subject.map_or(String::new(), |subject| {
-            format!(
-                "individual {}, generation {}",
-                subject.id, subject.generation
-            )
-        })
+        subject.map_or(String::new(), |subject| subject.to_string())
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         if self.known.is_none() {
-            let look = &desk.look;
-            let text = desk
-                .stage
-                .refused()
-                .unwrap_or("no individual has lived yet");
-            let text = fitted(text, usize::from(area.width), look.signs);
-            put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
+            nobody(desk, area, buffer);
         } else if Self::is_roomy(area) {
             self.draw_roomy(desk, area, buffer);
         } else {

@@ -121,7 +121,7 @@ fn keys(desk: &Desk) -> String {
 fn words(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::ActionValue => "Q of its actions",
-        Quantity::Preference => "C~+V, the preference,",
+        Quantity::Preference => "C~+V",
         Quantity::CTilde => "C~ of its children",
         Quantity::C => "C of its children",
         Quantity::Value => "V of its children",

@@ -10,12 +10,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::View;
 use super::lines::{Pen, draw_lines, last_start};
+use super::{View, nobody};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Look, Paint, fitted, put};
+use crate::dashboard::look::{Look, Paint};
 use crate::dashboard::scene::{Scene, draw_scene};
 use crate::hierarchy::{Tree, to_dot};
 use crate::lab::specimen::StepTrace;
@@ -204,21 +204,15 @@ impl View for Stepper {
             (false, _) => format!("{}x", desk.stage.speed()),
         };
         format!(
-            "individual {}, generation {} {separator} trial {} {separator} step {} {separator} {state}",
-            subject.id, subject.generation, trace.trial, trace.step
+            "{subject} {separator} trial {} {separator} step {} {separator} {state}",
+            trace.trial, trace.step
         )
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
         let Some(shown) = self.shown(desk) else {
-            let text = desk
-                .stage
-                .refused()
-                .unwrap_or("no rollout is on the stage yet");
-            let text = fitted(text, usize::from(area.width), look.signs);
-            put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
-            return;
+            return nobody(desk, area, buffer);
         };
         let rows = shown.trace.after.readings.len() + 2;
         let areas = Areas::of(area, u16::try_from(rows).unwrap_or(u16::MAX));

@@ -27,7 +27,7 @@ impl Widths {
         let values = choices.flat_map(|choice| [choice.preference(), choice.value, choice.c]);
         let digits = decimals(values.chain(explanation.action.values.iter().copied()));
         let (number, percent, digits) = match columns < NARROW {
-            true => (7, 5, digits - 1),
+            true => (7, 6, digits - 1),
             false => (8, 6, digits),
         };
         let rest = columns.saturating_sub(4 * number + percent);
