@@ -1,10 +1,11 @@
-//! What the dashboard costs: time to the first frame, bytes a second over the line, time
-//! that evolution loses. The real program is measured in a real terminal.
+//! What the dashboard costs: time to the first frame, time from a key to its answer, bytes a
+//! second over the line, time that evolution loses. The real program is measured in a real
+//! terminal.
 //!
 //! `cargo bench --bench dashboard` prints all figures, the goals beside them; `-- start`,
-//! `bytes`, `silence` or `cost` some of them. Times are those
-//! of the machine as it is; the cost for evolution is taken in processor time, in pairs of
-//! runs with and without the dashboard, of which the median counts.
+//! `keys`, `bytes`, `silence` or `cost` some of them. Times are those of the machine as it is;
+//! the cost for evolution is taken in pairs of runs with and without the dashboard, of which
+//! the median counts, as time and as processor time, which others on the machine disturb less.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -35,6 +36,9 @@ const SILENT: Duration = Duration::from_secs(5);
 /// Starts of the program.
 const STARTS: usize = 9;
 
+/// Keys pressed.
+const KEYS: usize = 50;
+
 /// Pairs of runs.
 const PAIRS: usize = 5;
 
@@ -44,8 +48,9 @@ fn main() {
         return;
     }
     println!("{:52} {:>14} {:>16}", "", "measured", "goal");
-    let parts: [(&str, fn()); 4] = [
+    let parts: [(&str, fn()); 5] = [
         ("start", first_frame),
+        ("keys", all_keys),
         ("bytes", all_bytes),
         ("silence", silence),
         ("cost", cost),
@@ -84,6 +89,42 @@ fn first_frame() {
     });
     let time = median(times.collect());
     line("start to first frame", &format!("{time:.0} ms"), "150 ms");
+}
+
+fn all_keys() {
+    keys("10 frames a second", &[]);
+    keys("--fps 2", &["--fps", "2"]);
+}
+
+/// Time from pressing a key to the view that it opens, while all threads compute.
+fn keys(what: &str, more: &[&str]) {
+    let parent = TempDir::new().unwrap();
+    let mut pty = run(&parent.path().join("run"), &[&ENDLESS[..], more].concat());
+    pty.wait("a generation", |pty| pty.screen().contains("generation 2"));
+    let views = [("6", " Population "), ("1", " Overview ")];
+    let times = (0..KEYS).map(|index| {
+        // At any time between two frames.
+        thread::sleep(Duration::from_millis(200 + 37 * index as u64 % 100));
+        let (key, title) = views[index % 2];
+        let begun = Instant::now();
+        pty.press(key);
+        while !pty.screen().lines().next().unwrap().contains(title) {
+            assert!(
+                begun.elapsed() < Duration::from_secs(60),
+                "{key} does nothing"
+            );
+            thread::sleep(Duration::from_micros(200));
+        }
+        begun.elapsed().as_secs_f64() * 1000.0
+    });
+    let times: Vec<_> = times.collect();
+    let worst = times.iter().copied().fold(0.0, f64::max);
+    let measured = format!("{:.0}, {worst:.0} ms", median(times));
+    line(
+        &format!("key to its answer, {what}: median, worst"),
+        &measured,
+        "50 ms",
+    );
 }
 
 fn all_bytes() {
@@ -140,7 +181,7 @@ fn silence() {
 fn cost() {
     let ratios: Vec<[f64; 2]> = (0..PAIRS)
         .map(|_| {
-            let [plain, shown] = [&["--headless"][..], &[]].map(whole_run);
+            let [plain, shown] = [false, true].map(whole_run);
             [shown[0] / plain[0], shown[1] / plain[1]]
         })
         .collect();
@@ -158,8 +199,9 @@ fn cost() {
     }
 }
 
-/// Time until evolution is over, and processor time that the program has used by then.
-fn whole_run(more: &[&str]) -> [f64; 2] {
+/// Time until evolution is over, and processor time that the program has used by then, with
+/// the dashboard or without.
+fn whole_run(shown: bool) -> [f64; 2] {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     let settings = [
@@ -170,6 +212,7 @@ fn whole_run(more: &[&str]) -> [f64; 2] {
         "--set",
         "evolution.generation_limit=40",
     ];
+    let more: &[&str] = if shown { &[] } else { &["--headless"] };
     let begun = Instant::now();
     let mut pty = run(&folder, &[&settings[..], more].concat());
     let summary = folder.join("summary.json");
@@ -179,7 +222,11 @@ fn whole_run(more: &[&str]) -> [f64; 2] {
         thread::sleep(Duration::from_millis(1));
     }
     let time = begun.elapsed().as_secs_f64();
-    pty.press("q");
+    if shown {
+        // Before the program knows that it is over, it would ask whether to save the run.
+        pty.wait_for("FINISHED");
+        pty.press("q");
+    }
     pty.ended();
     [time, used]
 }

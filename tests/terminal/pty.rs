@@ -178,11 +178,12 @@ impl Pty {
         signal(name, self.id());
     }
 
-    /// Pulls the terminal from under the program, which must be one that draws. Before that it
+    /// Pulls the terminal from under the program, which must be one that draws; from a
+    /// terminal that was stalled nothing more is read. Before that the program
     /// sees keys that nobody pressed: Enter and Ctrl-D.
     pub fn hang_up(&mut self) {
-        self.stall(false);
         self.shown.closing.store(true, Ordering::SeqCst);
+        self.stall(false);
         // The reader has the terminal until something comes, and a window of another size
         // makes the program draw.
         let reader = self.reader.take().unwrap();

@@ -1,7 +1,10 @@
 //! Signals, and lines that drop.
 
+use maxq_lab::lab::Checkpoint;
+use portable_pty::CommandBuilder;
+
 use crate::common::wait_until;
-use crate::pty::{Pty, program};
+use crate::pty::{Pty, in_environment, program};
 use crate::{ENDLESS, Place, exists, wait_for_end};
 
 #[test]
@@ -94,6 +97,80 @@ fn a_run_without_a_dashboard_survives_the_line_too() {
     place.wait_for_evolution();
     pty.signal("HUP");
     pty.signal("HUP");
+    place.wait_for_evolution();
+    pty.signal("TERM");
+    wait_for_end(&mut pty, 143);
+    place.assert_saved();
+}
+
+#[test]
+fn who_was_started_to_survive_a_line_that_drops_does_whatever_is_wanted_otherwise() {
+    let place = Place::new();
+    // What `nohup` does, and a shell that was told to.
+    let mut command = CommandBuilder::new("/bin/sh");
+    command.args(["-c", "trap '' HUP; exec \"$0\" \"$@\""]);
+    command.arg(env!("CARGO_BIN_EXE_maxq-lab"));
+    command.args(place.run(ENDLESS));
+    command.args(["--headless", "--on-hangup", "stop"]);
+    let mut pty = Pty::start(120, 40, in_environment(command));
+    place.wait_for_evolution();
+    pty.signal("HUP");
+    pty.signal("HUP");
+    place.wait_for_evolution();
+    pty.signal("TERM");
+    wait_for_end(&mut pty, 143);
+    place.assert_saved();
+}
+
+#[test]
+fn two_signals_end_the_program_at_once_and_cost_no_more_than_the_generation_under_way() {
+    for (first, second, codes) in [
+        ("TERM", "TERM", [143, 143]),
+        ("INT", "INT", [130, 130]),
+        ("INT", "TERM", [130, 143]),
+    ] {
+        let place = Place::new();
+        let mut pty = place.start(&[]);
+        place.wait_for_evolution();
+        pty.signal(first);
+        pty.signal(second);
+        let code = pty.ended().exit_code();
+        assert!(codes.contains(&code), "{first}, {second}: {code}");
+        pty.wait_given_back();
+        if let Ok(text) = std::fs::read_to_string(place.folder.join("checkpoint.json")) {
+            assert!(Checkpoint::from_text(&text).is_ok());
+        }
+        let mut pty = place.on("resume");
+        pty.wait_for("RUNNING");
+        place.wait_for_evolution();
+        pty.signal("TERM");
+        wait_for_end(&mut pty, 143);
+        place.assert_saved();
+    }
+}
+
+#[test]
+fn a_signal_that_says_that_the_line_dropped_ends_the_run_if_that_is_wanted() {
+    let place = Place::new();
+    let mut pty = place.start(&["--on-hangup", "stop"]);
+    place.wait_for_evolution();
+    pty.signal("HUP");
+    wait_for_end(&mut pty, 129);
+    pty.wait_given_back();
+    place.assert_saved();
+}
+
+#[test]
+fn a_line_that_drops_in_the_middle_of_a_frame_leaves_the_run_alone() {
+    let place = Place::new();
+    let mut pty = place.start(&[]);
+    pty.stall(true);
+    // Whole frames, until the terminal has no room for the next.
+    for columns in [200, 120].repeat(8) {
+        pty.resize(columns, 60);
+        place.wait_for_evolution();
+    }
+    pty.hang_up();
     place.wait_for_evolution();
     pty.signal("TERM");
     wait_for_end(&mut pty, 143);

@@ -1,8 +1,9 @@
 //! A dashboard on a terminal: who is asked what, and when a frame is drawn.
 //!
-//! Events of the run are taken in once a frame, however many there are, so that showing a
-//! run costs the same at any speed of evolution. Keys act when they are pressed. A frame
-//! is drawn when something has changed and the terminal has taken the last one.
+//! Events of the run are taken in a few times a second, however many there are, so that
+//! showing a run costs the same at any speed of evolution. Keys act, and are answered, when
+//! they are pressed. A frame is drawn when something has changed and the terminal has taken
+//! the last one.
 
 mod loader;
 mod runs;
@@ -29,6 +30,13 @@ use loader::{Loaded, Loader};
 
 /// Time between two looks whether the program is in the foreground again.
 const BACKGROUND: Duration = Duration::from_millis(250);
+
+/// Time between two looks for news of the run: generations that follow each other faster are
+/// read by nobody, and every number that changes costs bytes.
+const NEWS: Duration = Duration::from_millis(200);
+
+/// Shortest time between two frames: a key that repeats draws no more often.
+const GAP: Duration = Duration::from_millis(25);
 
 /// Why a session is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +68,9 @@ pub struct Session<'s> {
     /// The run folder.
     folder: &'s Path,
     ticked: Instant,
+    /// When the news were taken in last, and when a frame was drawn.
+    heard: Option<Instant>,
+    drawn: Option<Instant>,
     /// Whether something may have changed that was not drawn.
     due: bool,
 }
@@ -97,6 +108,8 @@ impl<'s> Session<'s> {
             period: Duration::from_secs_f64(1.0 / frames_per_second.clamp(0.1, 60.0)),
             folder,
             ticked: Instant::now(),
+            heard: None,
+            drawn: None,
             due: true,
         })
     }
@@ -147,7 +160,7 @@ impl<'s> Session<'s> {
         }
     }
 
-    /// Takes in the news of the run and the time, once a frame.
+    /// Takes in the time, once a frame, and the news of the run.
     fn tick(&mut self) -> Option<Exit> {
         let elapsed = self.ticked.elapsed();
         let first = self.app.desk().clock.is_zero();
@@ -156,10 +169,10 @@ impl<'s> Session<'s> {
         }
         self.ticked = Instant::now();
         self.due = true;
-        for news in self.source.news() {
-            if let Some(exit) = self.take_in(news) {
-                return Some(exit);
-            }
+        if self.heard.is_none_or(|heard| heard.elapsed() >= NEWS)
+            && let Some(exit) = self.hear()
+        {
+            return Some(exit);
         }
         let effects = self.app.update(Input::Tick(elapsed));
         if let Some(exit) = self.carry_out(effects) {
@@ -167,6 +180,13 @@ impl<'s> Session<'s> {
         }
         let hidden = !self.terminal.is_shown();
         (hidden && self.appear().is_err()).then_some(Exit::HungUp)
+    }
+
+    /// Takes in all that is new of the run.
+    fn hear(&mut self) -> Option<Exit> {
+        self.heard = Some(Instant::now());
+        let mut news = self.source.news().into_iter();
+        news.find_map(|news| self.take_in(news))
     }
 
     /// Takes in what is new of the run.
@@ -221,18 +241,29 @@ impl<'s> Session<'s> {
     /// Draws if there is something to draw and the terminal takes it; otherwise it is drawn
     /// when the terminal has taken the frame before.
     fn draw(&mut self) -> io::Result<()> {
-        if self.due && self.terminal.is_ready() {
+        if self.due && self.terminal.is_ready() && self.gap().is_zero() {
             self.due = false;
             if self.app.take_dirty() {
                 let app = &self.app;
                 self.terminal.draw(|frame| app.draw(frame))?;
+                self.drawn = Some(Instant::now());
             }
         }
         Ok(())
     }
 
+    /// Time until the next frame may be drawn.
+    fn gap(&self) -> Duration {
+        let since = self.drawn.map_or(GAP, |drawn| drawn.elapsed());
+        GAP.min(self.period).saturating_sub(since)
+    }
+
     fn wait(&self, signals: &Receiver<i32>) -> Woken {
-        let left = self.period().saturating_sub(self.ticked.elapsed());
+        let mut left = self.period().saturating_sub(self.ticked.elapsed());
+        // A terminal that is not ready tells when it is.
+        if self.due && self.terminal.is_ready() {
+            left = left.min(self.gap());
+        }
         let time = after(left);
         select! {
             recv(self.terminal.keys) -> typed => Woken::Typed(typed.ok()),
@@ -252,6 +283,8 @@ impl<'s> Session<'s> {
             Woken::Signal(signal) => Some(Exit::Signal(signal)),
             Woken::Typed(Some(typed)) => self.typed(typed),
             Woken::Loaded(Loaded { generation, state }) => {
+                // What a person chose is shown at once, what evolution did in its time.
+                self.due |= !self.app.desk().follows();
                 let effects = self.app.update(Input::Population { generation, state });
                 self.carry_out(effects)
             }
@@ -267,7 +300,7 @@ impl<'s> Session<'s> {
         }
     }
 
-    /// Acts on a key and on all that were pressed since.
+    /// Acts on a key and on all that were pressed since, and hears what the run says to it.
     fn typed(&mut self, typed: Typed) -> Option<Exit> {
         let mut typed = Some(typed);
         while let Some(event) = typed {
@@ -280,7 +313,7 @@ impl<'s> Session<'s> {
             }
             typed = self.terminal.keys.try_recv().ok();
         }
-        None
+        self.hear()
     }
 
     fn resize(&mut self) -> Option<Exit> {

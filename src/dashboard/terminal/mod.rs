@@ -4,12 +4,14 @@
 //! for it but the two threads that do nothing else: one writes, one reads. And a
 //! terminal that is gone is never asked again.
 
+mod cursor;
 mod jobs;
 mod keyboard;
 mod outlet;
 mod painter;
 mod pen;
 mod screen;
+mod strokes;
 mod tty;
 
 use std::io;

@@ -51,11 +51,11 @@ impl Pen {
         }
     }
 
-    /// Appends what takes the terminal from this pen to another: the shorter of a change
-    /// and a new start.
-    pub(super) fn change(self, to: Self, bytes: &mut Vec<u8>) {
+    /// What takes the terminal from this pen to another: the shorter of a change and a new
+    /// start.
+    pub(super) fn way_to(self, to: Self) -> String {
         if self == to {
-            return;
+            return String::new();
         }
         let change = self.parameters(to);
         let anew = format!("0;{}", Self::default().parameters(to));
@@ -64,9 +64,10 @@ impl Pen {
         } else {
             anew
         };
-        bytes.extend_from_slice(b"\x1b[");
-        bytes.extend_from_slice(shorter.trim_end_matches(';').as_bytes());
-        bytes.push(b'm');
+        let parameters = shorter.trim_end_matches(';');
+        // No parameter is the parameter 0.
+        let parameters = if parameters == "0" { "" } else { parameters };
+        format!("\x1b[{parameters}m")
     }
 
     /// Parameters of a change, each with a semicolon behind it.
