@@ -35,19 +35,23 @@ pub(super) struct Screen {
     closed: AtomicBool,
     /// Held while a frame is written.
     writing: Mutex<()>,
+    /// Held while the screen is given back: who wants the same must not go on, and end the
+    /// program, before it is.
+    leaving: Mutex<()>,
     /// Bytes of frames so far.
     written: AtomicU64,
 }
 
-/// Gives the terminal back, now and for good, whatever other threads are doing. Does
-/// nothing if there is nothing to give back.
+/// Gives the terminal back, now and for good, whatever other threads are doing; if one is
+/// doing the same, returns when it is done. Does nothing if there is nothing to give back.
 pub fn restore() {
-    let current = CURRENT
-        .try_lock()
-        .ok()
-        .and_then(|mut current| current.take());
-    if let Some(screen) = current {
+    let current = || lock_within(&CURRENT, PATIENCE);
+    let screen = current().and_then(|current| current.clone());
+    if let Some(screen) = screen {
         screen.close();
+        if let Some(mut current) = current() {
+            *current = None;
+        }
     }
 }
 
@@ -59,6 +63,7 @@ impl Screen {
             entered: AtomicBool::new(false),
             closed: AtomicBool::new(false),
             writing: Mutex::new(()),
+            leaving: Mutex::new(()),
             written: AtomicU64::new(0),
         });
         *CURRENT.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&screen));
@@ -70,7 +75,7 @@ impl Screen {
         if self.is_closed() {
             return Err(io::ErrorKind::BrokenPipe.into());
         }
-        let _writing = self.writing_within(PATIENCE);
+        let _writing = lock_within(&self.writing, PATIENCE);
         self.tty.make_raw()?;
         self.entered.store(true, Ordering::SeqCst);
         self.tty.write_within(ENTER, PATIENCE)?;
@@ -83,12 +88,13 @@ impl Screen {
     /// Gives the screen back. A terminal that is gone or stuck is no obstacle: what it
     /// does not take within a moment is given up. Returns whether it took everything.
     pub(super) fn leave(&self) -> bool {
+        let _leaving = lock_within(&self.leaving, 3 * PATIENCE);
         if !self.entered.swap(false, Ordering::SeqCst) {
             return true;
         }
         // The frame that is being written is not wanted any more; its writer gives up within
         // a slice of time. If it is this thread, which panicked, it never does.
-        let _writing = self.writing_within(PATIENCE);
+        let _writing = lock_within(&self.writing, PATIENCE);
         let taken = self.tty.write_within(LEAVE, PATIENCE);
         if self.mouse {
             // What the mouse has said meanwhile is not for the shell.
@@ -138,16 +144,18 @@ impl Screen {
     fn writing(&self) -> MutexGuard<'_, ()> {
         self.writing.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
 
-    fn writing_within(&self, time: Duration) -> Option<MutexGuard<'_, ()>> {
-        let begun = Instant::now();
-        loop {
-            match self.writing.try_lock() {
-                Ok(guard) => return Some(guard),
-                Err(TryLockError::Poisoned(error)) => return Some(error.into_inner()),
-                Err(TryLockError::WouldBlock) if begun.elapsed() >= time => return None,
-                Err(TryLockError::WouldBlock) => thread::sleep(Duration::from_millis(1)),
-            }
+/// Waits for a lock, and gives up after a time: the thread that has it may be stuck, or be
+/// this one, which panicked.
+fn lock_within<T>(mutex: &Mutex<T>, time: Duration) -> Option<MutexGuard<'_, T>> {
+    let begun = Instant::now();
+    loop {
+        match mutex.try_lock() {
+            Ok(guard) => return Some(guard),
+            Err(TryLockError::Poisoned(error)) => return Some(error.into_inner()),
+            Err(TryLockError::WouldBlock) if begun.elapsed() >= time => return None,
+            Err(TryLockError::WouldBlock) => thread::sleep(Duration::from_millis(1)),
         }
     }
 }
