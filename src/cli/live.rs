@@ -20,7 +20,7 @@ use crate::lab::specimen::bench;
 use crate::lab::{Outcome, Run};
 
 /// Longest wait for a terminal to take the last words.
-const PATIENCE: Duration = Duration::from_secs(2);
+pub(super) const PATIENCE: Duration = Duration::from_secs(2);
 
 /// What becomes of a run when the line drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -57,16 +57,8 @@ pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &Ho
         },
         None => None,
     };
-    let went_headless = match exit {
-        None => true,
-        Some(Exit::HungUp) => hang_up(&run, &ended, how.on_hangup),
-        Some(Exit::Signal(signal)) => {
-            ended.by(signal);
-            false
-        }
-        Some(_) => false,
-    };
-    if went_headless {
+    // Nobody could let a run go on that waits.
+    if goes_on(exit, &ended, how.on_hangup, || run.controls.resume()) {
         headless(&run, signals, &ended, survives)?;
     } else {
         run.controls.stop();
@@ -102,36 +94,38 @@ fn show(run: &Run, outfit: Outfit, signals: &Caught) -> Result<Exit, Failure> {
     outfit.show(what, &run.folder, source, signals)
 }
 
-/// The line dropped. Returns whether the run goes on.
-fn hang_up(run: &Run, ended: &Ended, on_hangup: OnHangup) -> bool {
-    // A run without a terminal is not worth less for a system without /dev/null.
-    let _detached = terminal::detach();
-    let goes_on = on_hangup == OnHangup::Detach;
-    if goes_on {
-        // Nobody could let a run go on that waits.
-        run.controls.resume();
-    } else {
-        ended.by(SIGHUP);
+/// Whether work goes on without its dashboard that was left like this, or was not there;
+/// `resume` lets it, where the line dropped.
+pub(super) fn goes_on(
+    exit: Option<Exit>,
+    ended: &Ended,
+    on_hangup: OnHangup,
+    resume: impl FnOnce(),
+) -> bool {
+    match exit {
+        None => true,
+        Some(Exit::HungUp) => {
+            // A run without a terminal is not worth less for a system without /dev/null.
+            let _detached = terminal::detach();
+            match on_hangup {
+                OnHangup::Detach => resume(),
+                OnHangup::Stop => ended.by(SIGHUP),
+            }
+            on_hangup == OnHangup::Detach
+        }
+        Some(Exit::Signal(signal)) => {
+            ended.by(signal);
+            false
+        }
+        Some(_) => false,
     }
-    goes_on
 }
 
 /// Follows a run to its end without a dashboard, and through the drop of the line if it
 /// `survives` that.
 fn headless(run: &Run, signals: Caught, ended: &Ended, survives: bool) -> Result<(), Failure> {
-    let (controls, ended) = (run.controls.clone(), ended.clone());
-    thread::Builder::new()
-        .name(String::from("ending"))
-        .spawn(move || {
-            for signal in &signals.heard {
-                if signal == SIGHUP && survives {
-                    let _detached = terminal::detach();
-                    continue;
-                }
-                ended.by(signal);
-                controls.stop();
-            }
-        })?;
+    let controls = run.controls.clone();
+    signals.stop(ended, survives, move || controls.stop())?;
     let evolution = &run.scenario.evolution;
     let (limit, population) = (evolution.generation_limit, evolution.population_size);
     progress::follow(&run.events, limit, population);
@@ -140,7 +134,7 @@ fn headless(run: &Run, signals: Caught, ended: &Ended, survives: bool) -> Result
 
 /// Ends the program after a time, if it is still there: it was asked to end, the run is
 /// saved, and a terminal that takes nothing must not hold up what is left to say.
-fn end_within(time: Duration, code: i32) -> Result<(), Failure> {
+pub(super) fn end_within(time: Duration, code: i32) -> Result<(), Failure> {
     thread::Builder::new()
         .name(String::from("patience"))
         .spawn(move || {

@@ -37,17 +37,23 @@ pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize) {
 
 /// A bar on standard error, drawn only where that is a terminal and `shown` says so.
 pub(super) fn bar(length: u64, shown: bool) -> ProgressBar {
-    let target = match shown && stderr().is_terminal() {
-        true => ProgressDrawTarget::stderr_with_hz(5),
-        false => ProgressDrawTarget::hidden(),
-    };
-    let bar = ProgressBar::with_draw_target(Some(length), target);
+    let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
+    if shown {
+        appear(&bar);
+    }
     let template = "{bar:10} {elapsed}, at most {eta} left  {wide_msg}";
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
     bar.enable_steady_tick(Duration::from_millis(500));
     bar
+}
+
+/// Draws a bar on standard error from now on, where that is a terminal.
+pub(super) fn appear(bar: &ProgressBar) {
+    if stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
+    }
 }
 
 fn describe(record: &GenerationRecord) -> String {

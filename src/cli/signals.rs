@@ -52,6 +52,32 @@ impl Caught {
         Ok(Self { heard })
     }
 
+    /// Calls `stop` on every signal, those that wait already first; where the work `survives`
+    /// a line that drops, SIGHUP lets go of the terminal instead.
+    pub(super) fn stop(
+        self,
+        ended: &Ended,
+        survives: bool,
+        stop: impl Fn() + Send + 'static,
+    ) -> Result<(), Failure> {
+        let ended = ended.clone();
+        thread::Builder::new()
+            .name(String::from("ending"))
+            .spawn(move || {
+                for signal in &self.heard {
+                    if signal == SIGHUP && survives {
+                        // Work without a terminal is not worth less for a system without
+                        // /dev/null.
+                        let _detached = terminal::detach();
+                        continue;
+                    }
+                    ended.by(signal);
+                    stop();
+                }
+            })?;
+        Ok(())
+    }
+
     /// Calls `stop` on the first signal, the one that waits already if there is one.
     pub(super) fn then(self, stop: impl FnOnce() + Send + 'static) -> Result<Ended, Failure> {
         let ended = Ended::default();

@@ -59,7 +59,7 @@ pub use export::{FrameFormat, render};
 pub use input::{Effect, Export, Input};
 pub use model::{Model, Progress};
 pub use mouse::{Gesture, Mouse};
-pub use runs::{RunRow, RunsEffect, RunsTable, Standing};
+pub use runs::{RunRow, RunsEffect, RunsNews, RunsTable, Standing, Work};
 pub use stage::{SPEEDS, Stage, Subject};
 pub use still::Still;
 pub use views::ViewId;

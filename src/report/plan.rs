@@ -1,7 +1,7 @@
 //! A plan: which scenarios, arms and seeds a study has.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::arm::{Arm, Base};
 use super::numbers::Numbers;
 use super::plan_error::PlanError;
+use super::study::PLAN_FILE;
 use crate::files::{read_text, stated_format};
 use crate::scenario::{EMBEDDED_PLANS, Scenario};
 
@@ -89,40 +90,45 @@ struct PlanFile {
 }
 
 impl Plan {
-    /// Reads the plan by `name`: a file where there is one, else an embedded plan.
+    /// Reads the plan by `name`: a file, or that of a study's folder, where there is one,
+    /// else an embedded plan.
     ///
     /// # Errors
     /// When there is none, or it is not a plan that can be carried out.
     pub fn load(name: &str) -> Result<Self, PlanError> {
-        let path = Path::new(name);
-        if !path.exists() {
-            let embedded = EMBEDDED_PLANS.iter().find(|plan| plan.name == name);
-            let plan = embedded.ok_or_else(|| PlanError::NotFound {
-                name: name.to_owned(),
-                allowed: EMBEDDED_PLANS
-                    .iter()
-                    .map(|plan| plan.name)
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            })?;
-            return Self::parse(plan.json, plan.name, Path::new(""));
-        }
-        let text = read_text(path, MAX_PLAN_BYTES).map_err(|source| PlanError::Read {
-            file: name.to_owned(),
+        let embedded = EMBEDDED_PLANS.iter().find(|plan| plan.name == name);
+        let path = match (file_of(name), embedded) {
+            (Some(path), _) => path,
+            (None, Some(plan)) => return Self::parse(plan.json, plan.name, Path::new("")),
+            // Not a regular file: a pipe can be read, a folder says why not.
+            (None, None) if Path::new(name).exists() => PathBuf::from(name),
+            (None, None) => {
+                let names: Vec<_> = EMBEDDED_PLANS.iter().map(|plan| plan.name).collect();
+                return Err(PlanError::NotFound {
+                    name: name.to_owned(),
+                    allowed: names.join(", "),
+                });
+            }
+        };
+        let file = path.display().to_string();
+        let text = read_text(&path, MAX_PLAN_BYTES).map_err(|source| PlanError::Read {
+            file: file.clone(),
             source,
         })?;
-        Self::parse(&text, name, path.parent().unwrap_or(Path::new("")))
+        Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
     }
 
-    /// Whether `name` is that of a plan rather than of a scenario: an embedded plan, or a
-    /// JSON file that has arms.
+    /// Whether `name` is that of a plan rather than of a scenario: an embedded plan, the
+    /// folder of a study, or a JSON file that has arms.
     #[must_use]
     pub fn is_plan(name: &str) -> bool {
-        let path = Path::new(name);
-        if !path.is_file() {
+        let Some(path) = file_of(name) else {
             return EMBEDDED_PLANS.iter().any(|plan| plan.name == name);
+        };
+        if path != Path::new(name) {
+            return true;
         }
-        let text = read_text(path, MAX_PLAN_BYTES).unwrap_or_default();
+        let text = read_text(&path, MAX_PLAN_BYTES).unwrap_or_default();
         let json: Value = serde_json::from_str(&text).unwrap_or_default();
         json.get("arms").is_some()
     }
@@ -310,6 +316,14 @@ const NAMES: &str = "1 to 64 of a-z, 0-9, '-', '_' and '.', not starting with '.
 fn is_name(name: &str) -> bool {
     let letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
     (1..=64).contains(&name.len()) && name.chars().all(letter) && !name.starts_with(['.', '-'])
+}
+
+/// The file that a name means, if there is one: itself, or the plan of a study's folder.
+fn file_of(name: &str) -> Option<PathBuf> {
+    let path = PathBuf::from(name);
+    [path.join(PLAN_FILE), path]
+        .into_iter()
+        .find(|path| path.is_file())
 }
 
 fn place(path: &serde_path_to_error::Path) -> String {

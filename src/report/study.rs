@@ -12,6 +12,9 @@ use super::plan_error::PlanError;
 use crate::files::{read_text, write_atomically};
 use crate::scenario::Scenario;
 
+/// The plan in the folder of a study.
+pub(super) const PLAN_FILE: &str = "study.json";
+
 /// A study: a plan and the folder of its runs.
 ///
 /// ```text
@@ -87,7 +90,7 @@ impl Study {
     /// # Errors
     /// When the folder holds the study of another plan, or the operating system refuses.
     pub fn create(plan: Plan, folder: &Path) -> Result<Self, StudyError> {
-        let file = folder.join("study.json");
+        let file = folder.join(PLAN_FILE);
         let refused = |source| StudyError::Io {
             path: file.display().to_string(),
             source,
@@ -110,13 +113,19 @@ impl Study {
         })
     }
 
+    /// Whether a folder is that of a study.
+    #[must_use]
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(PLAN_FILE).is_file()
+    }
+
     /// The study in a folder.
     ///
     /// # Errors
     /// When the folder holds none, or its `study.json` is not a plan.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
-        let file = folder.join("study.json");
-        if !file.is_file() {
+        let file = folder.join(PLAN_FILE);
+        if !Self::is_in(folder) {
             return Err(StudyError::NotAStudy {
                 path: folder.display().to_string(),
             });

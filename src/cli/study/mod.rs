@@ -1,15 +1,19 @@
 //! `maxq-lab study`: many runs, how far they are, what comes out.
 
 mod elsewhere;
+mod progress;
 mod runs;
 mod status;
+mod table;
 mod watch;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 
+use super::live::OnHangup;
 use super::output::{Done, Failure};
+use super::show::Show;
 use crate::lab::Keep;
 use crate::report::{Arm, Base, Numbers, Plan, Study};
 
@@ -18,7 +22,8 @@ use crate::report::{Arm, Base, Numbers, Plan, Study};
 /// Every scenario, arm and seed gets a run folder of its own, DIR/SCENARIO/ARM/seed-N. Runs
 /// that are done are skipped, runs that were broken off are gone on with, as many at a
 /// time as there are processors, each on one thread. Ending this at any moment and starting
-/// it again gives the same bytes. When a run is over, the structure of its winner is
+/// it again gives the same bytes. On a terminal a table shows the runs, and opens any of them in
+/// the dashboard: press ? there. When a run is over, the structure of its winner is
 /// evaluated anew: fresh hierarchies, fresh trials, freshly trained primitive subtasks.
 ///
 /// Arms: evolved; random_selection (chance in the place of fitness: the control that tells
@@ -35,6 +40,7 @@ use crate::report::{Arm, Base, Numbers, Plan, Study};
 Examples:
   maxq-lab study thesis --out studies/thesis               the study of the thesis's claims
   maxq-lab study environment-1 environment-2 --seeds 1..10 --arms evolved,flat --out mine
+  maxq-lab study studies/thesis                            go on with a study
   maxq-lab study status studies/thesis                     at any time
   maxq-lab study watch studies/thesis                      live, as a table of runs to open
   maxq-lab study report studies/thesis                     what comes out"
@@ -59,47 +65,64 @@ pub(super) struct Args {
     #[arg(long, value_name = "all|none|N", default_value = "none")]
     keep: Keep,
 
-    /// Show no progress, although standard error is a terminal.
+    /// Open no table of the runs, although there is a terminal; a bar on standard error shows
+    /// the progress.
     #[arg(long)]
     headless: bool,
+
+    /// What becomes of the study when the line drops: it goes on without a terminal, or is
+    /// saved and ended.
+    #[arg(long, value_enum, default_value_t)]
+    on_hangup: OnHangup,
+
+    #[command(flatten)]
+    show: Show,
 }
 
 /// A study: what to run and where.
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct What {
-    /// A plan (a file, or 'thesis'), or scenarios (files, or names of embedded ones).
-    #[arg(required = true, value_name = "PLAN|SCENARIO")]
+    /// A plan (a file, or the name of an embedded one), or the folder of a study to go on
+    /// with, or scenarios (files, or names of embedded ones).
+    #[arg(required = true, value_name = "PLAN|DIR|SCENARIO")]
     what: Vec<String>,
 
-    /// Seeds for scenarios: numbers and ranges, both ends counted; a plan has its own.
-    #[arg(long, value_name = "A..B", default_value = "1..10")]
-    seeds: Numbers,
+    /// Seeds for scenarios: numbers and ranges, both ends counted; a plan has its own
+    /// [default: 1..10].
+    #[arg(long, value_name = "A..B")]
+    seeds: Option<Numbers>,
 
-    /// Arms for scenarios; a plan has its own.
-    #[arg(
-        long,
-        value_name = "ARM,...",
-        value_delimiter = ',',
-        default_value = "evolved,random_selection"
-    )]
+    /// Arms for scenarios; a plan has its own [default: evolved,random_selection].
+    #[arg(long, value_name = "ARM,...", value_delimiter = ',')]
     arms: Vec<String>,
 
-    /// The folder of the study.
-    #[arg(long, value_name = "DIR", required = true)]
+    /// The folder of the study [default for the folder of a study: itself].
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
 impl What {
     /// The study, its folder made if it is not there.
     pub(super) fn study(&self) -> Result<Study, Failure> {
-        let folder = self.out.clone().unwrap_or_default();
-        Ok(Study::create(self.plan()?, &folder)?)
+        let plan = self.plan()?;
+        let itself = || match self.what.as_slice() {
+            [only] if Study::is_in(Path::new(only)) => Some(Path::new(only)),
+            _ => None,
+        };
+        let folder = self.out.as_deref().or_else(itself);
+        let folder = folder.ok_or("--out: found none; allowed: the folder of the study")?;
+        Ok(Study::create(plan, folder)?)
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
         if let [only] = self.what.as_slice()
             && Plan::is_plan(only)
         {
+            if self.seeds.is_some() || !self.arms.is_empty() {
+                let message = "--seeds, --arms: found beside a plan, which has its own; \
+                               allowed: beside scenarios";
+                return Err(message.into());
+            }
             return Ok(Plan::load(only)?);
         }
         let arms = self.arms.iter().map(|name| {
@@ -107,8 +130,15 @@ impl What {
             base.map(Arm::of)
                 .ok_or_else(|| format!("--arms: found {name:?}; allowed: {}", Base::names()))
         });
-        let arms = arms.collect::<Result<_, _>>()?;
-        Ok(Plan::of(&self.what, self.seeds.clone(), arms)?)
+        let mut arms: Vec<_> = arms.collect::<Result<_, _>>()?;
+        if arms.is_empty() {
+            arms = [Base::Evolved, Base::RandomSelection].map(Arm::of).into();
+        }
+        let seeds = match &self.seeds {
+            Some(seeds) => seeds.clone(),
+            None => "1..10".parse::<Numbers>()?,
+        };
+        Ok(Plan::of(&self.what, seeds, arms)?)
     }
 }
 

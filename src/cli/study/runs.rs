@@ -1,50 +1,124 @@
-//! The runs of a study, done by this process.
+//! The runs of a study, done by this process: on a terminal with their table.
 
 use std::num::NonZeroUsize;
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::Arc;
+use std::thread;
 
 use super::Args;
+use super::progress::Progress;
+use super::table;
+use crate::cli::live::{OnHangup, PATIENCE, end_within, goes_on};
 use crate::cli::output::{self, Done, Failure};
-use crate::cli::progress::bar;
-use crate::cli::signals::Caught;
-use crate::report::{Happening, Pace, RunId, Stage, Study, StudyControls, carry_out, status};
+use crate::cli::show::{Outfit, Show};
+use crate::cli::signals::{Caught, Ended};
+use crate::dashboard::session::Exit;
+use crate::dashboard::terminal;
+use crate::report::{RunId, Stage, Study, StudyControls, carry_out, status};
 
 /// Carries out `study`.
 pub(super) fn main(args: &Args) -> Done {
     let study = args.what.study()?;
     let runs = wanted(&study, &args.only)?;
+    let signals = Caught::now()?;
+    let outfit = match args.headless || !Show::is_possible() {
+        true => None,
+        false => Some(args.show.outfit()?),
+    };
     let jobs = jobs(args.jobs);
-    let controls = Arc::new(StudyControls::default());
-    let stopping = Arc::clone(&controls);
-    let ended = Caught::now()?.then(move || stopping.stop())?;
-    let show = Show::new(&study, &runs, jobs, !args.headless);
-    carry_out(&study, &runs, jobs, args.keep, &controls, |happening| {
-        show.tell(happening)
+    let work = Arc::new(OwnWork {
+        controls: StudyControls::default(),
+        progress: Progress::new(&study, &runs, jobs.get()),
     });
-    let failed = show.finish();
+    let ended = Ended::default();
+    let exit = thread::scope(|scope| {
+        scope.spawn(|| {
+            let tell = |happening| work.progress.tell(&happening);
+            carry_out(&study, &runs, jobs, args.keep, &work.controls, tell);
+            work.progress.end();
+        });
+        let followed = follow(&study, &work, outfit, signals, &ended, args.on_hangup);
+        if followed.is_err() {
+            work.controls.stop();
+        }
+        followed
+    })?;
+    if let Some(Exit::Signal(signal)) = exit {
+        end_within(PATIENCE, 128 + signal)?;
+    }
+    let failed = work.progress.finish();
+    let left = tell_done(&study, &runs)?;
+    conclude(failed, left, &work.controls, &ended, exit)
+}
+
+/// The work on the runs that this process does, and how far it is.
+struct OwnWork {
+    controls: StudyControls,
+    progress: Progress,
+}
+
+/// Follows the work with a table, as long as somebody wants to see it, then with a bar.
+/// Returns while the work goes on, or is about to stop; how the table was left, if there
+/// was one.
+fn follow(
+    study: &Study,
+    work: &Arc<OwnWork>,
+    outfit: Option<Outfit>,
+    signals: Caught,
+    ended: &Ended,
+    on_hangup: OnHangup,
+) -> Result<Option<Exit>, Failure> {
+    // There is a line that can drop. Without one SIGHUP asks the program to end.
+    let survives = on_hangup == OnHangup::Detach && terminal::is_attached();
+    let own = Arc::clone(work);
+    let exit = match outfit {
+        Some(outfit) => Some(table::show(study, outfit, &signals, move || {
+            own.progress.own()
+        })?),
+        None => None,
+    };
+    if exit == Some(Exit::Detached) || goes_on(exit, ended, on_hangup, || {}) {
+        let stopping = Arc::clone(work);
+        signals.stop(ended, survives, move || stopping.controls.stop())?;
+        work.progress.appear();
+    } else {
+        work.controls.stop();
+    }
+    Ok(exit)
+}
+
+/// Says how many runs are done; returns how many are not.
+fn tell_done(study: &Study, runs: &[RunId]) -> Result<usize, Failure> {
     let all = runs.len();
-    let done = status(&study)
+    let done = status(study)
         .iter()
         .filter(|status| status.stage == Stage::Done && runs.contains(&status.run))
         .count();
-    output::text(&format!(
-        "{done} of {all} runs done in {}\n",
-        study.folder.display()
-    ))?;
-    if let Some(code) = ended.exit_code().filter(|_| done < all) {
+    let folder = study.folder.display();
+    output::text(&format!("{done} of {all} runs done in {folder}\n"))?;
+    Ok(all - done)
+}
+
+fn conclude(
+    failed: usize,
+    left: usize,
+    controls: &StudyControls,
+    ended: &Ended,
+    exit: Option<Exit>,
+) -> Done {
+    if left > 0 && controls.is_stopped() {
         output::message("stopped; the same command goes on");
-        return Ok(ExitCode::from(code));
-    }
-    if failed == 0 && done < all {
+    } else if failed == 0 && left > 0 {
         output::message(
             "the others are done by another process; 'study status' tells how far it is",
         );
     }
-    match failed {
-        0 => Ok(ExitCode::SUCCESS),
-        _ => Ok(ExitCode::FAILURE),
+    if let Some(code) = ended.exit_code().filter(|_| left > 0) {
+        return Ok(ExitCode::from(code));
+    }
+    match failed > 0 || exit == Some(Exit::Panicked) {
+        true => Ok(ExitCode::FAILURE),
+        false => Ok(ExitCode::SUCCESS),
     }
 }
 
@@ -64,70 +138,4 @@ fn wanted(study: &Study, only: &[String]) -> Result<Vec<RunId>, Failure> {
 fn jobs(asked: u16) -> NonZeroUsize {
     let all = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     NonZeroUsize::new(usize::from(asked)).unwrap_or_else(all)
-}
-
-/// Shows what happens.
-struct Show<'s> {
-    study: &'s Study,
-    jobs: usize,
-    bar: indicatif::ProgressBar,
-    state: Mutex<ShowState>,
-}
-
-struct ShowState {
-    pace: Pace,
-    failed: usize,
-}
-
-impl<'s> Show<'s> {
-    fn new(study: &'s Study, runs: &[RunId], jobs: NonZeroUsize, shown: bool) -> Self {
-        let bar = bar(runs.len() as u64, shown);
-        if let Ok(style) =
-            indicatif::ProgressStyle::with_template("{bar:20} {pos}/{len} {elapsed}  {wide_msg}")
-        {
-            bar.set_style(style);
-        }
-        Self {
-            study,
-            jobs: jobs.get(),
-            bar,
-            state: Mutex::new(ShowState {
-                pace: Pace::of(runs),
-                failed: 0,
-            }),
-        }
-    }
-
-    fn tell(&self, happening: Happening) {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let (run, took) = match &happening {
-            Happening::Begun(_) => return,
-            Happening::Done { run, took, .. } => (run, Some(*took)),
-            Happening::Elsewhere(run) => (run, None),
-            Happening::Failed { run, error } => {
-                state.failed += 1;
-                let message = format!("error: {}: {error}", self.study.name(run));
-                self.bar.suspend(|| output::message(&message));
-                (run, None)
-            }
-        };
-        state.pace.note(run, took);
-        self.bar.inc(1);
-        let left = state.pace.left(self.jobs).map(|left| {
-            let whole = Duration::from_secs(left.as_secs());
-            format!("about {} left, ", humantime::format_duration(whole))
-        });
-        let left = left.unwrap_or_default();
-        self.bar
-            .set_message(format!("{left}last: {}", self.study.name(run)));
-    }
-
-    /// Ends the display and says how many runs failed.
-    fn finish(self) -> usize {
-        self.bar.finish_and_clear();
-        self.state
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner)
-            .failed
-    }
 }

@@ -6,6 +6,7 @@ use ratatui::layout::Rect;
 use super::RunsTable;
 use super::columns::{Column, Placed, place};
 use super::row::{RunRow, Standing};
+use super::work::question;
 use crate::dashboard::app::{SMALLEST, body, too_small};
 use crate::dashboard::header::{ALWAYS, last_line, put_hints, put_message};
 use crate::dashboard::keys::Action;
@@ -74,6 +75,10 @@ impl RunsTable {
             let titles = ("Help", "Runs of a study");
             window(look, titles, &self.help_lines(), scroll, area, buffer);
         }
+        if self.asked {
+            let lines = question(&self.keys);
+            window(look, ("Question", ""), &lines, 0, area, buffer);
+        }
     }
 
     pub(super) fn help_lines(&self) -> Vec<Line> {
@@ -85,7 +90,7 @@ impl RunsTable {
     }
 
     /// ```text
-    ///  ▶ RUNNING  Study thesis · studies/thesis
+    ///  ▶ RUNNING  Study thesis · studies/thesis                 about 12 min left
     /// ```
     fn draw_header(&self, area: Rect, buffer: &mut Buffer) {
         let look = &self.look;
@@ -93,7 +98,9 @@ impl RunsTable {
         let all_done = || self.rows().iter().all(|row| row.standing == Standing::Done);
         let (sign, word, paint) = match &self.rows {
             None => (look.signs.paused, "READING", Paint::Notice),
-            Some(_) if has(Standing::Running) => (look.signs.running, "RUNNING", Paint::Good),
+            Some(_) if self.work.is_some() || has(Standing::Running) => {
+                (look.signs.running, "RUNNING", Paint::Good)
+            }
             Some(_) if all_done() => (look.signs.finished, "DONE", Paint::Good),
             Some(_) => (look.signs.stopped, "NOBODY WORKS ON IT", Paint::Notice),
         };
@@ -101,9 +108,14 @@ impl RunsTable {
         let column = put(buffer, area, (0, 0), &state, look.style(paint));
         let (name, folder) = (one_line(&self.name), one_line(&self.folder));
         let text = format!(" Study {name} {} {folder}", look.signs.separator);
-        let room = usize::from(area.width.saturating_sub(column));
+        let left = self.work.and_then(super::Work::words).unwrap_or_default();
+        let right = width(&left) + 1;
+        let room = usize::from(area.width.saturating_sub(column)).saturating_sub(right);
         let text = fitted(&text, room, look.signs);
         put(buffer, area, (column, 0), &text, look.style(Paint::Text));
+        let start = usize::from(area.width).saturating_sub(right);
+        let start = u16::try_from(start).unwrap_or(u16::MAX);
+        put(buffer, area, (start, 0), &left, look.style(Paint::Dim));
     }
 
     /// How many runs stand how.

@@ -7,6 +7,7 @@
 mod columns;
 mod draw;
 mod row;
+mod work;
 
 use std::collections::BTreeMap;
 
@@ -15,6 +16,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 pub use row::{RunRow, Standing};
+pub use work::{RunsNews, Work};
 
 use super::app::body;
 use super::keys::{Action, Key, KeyMap};
@@ -30,8 +32,10 @@ use columns::Column;
 pub enum RunsEffect {
     /// Open the run of this row, by its place in the rows that were told.
     Open(usize),
-    /// Leave.
+    /// Leave; work of this program on the runs is to be saved and stopped.
     Leave,
+    /// Leave, and go on with the work on the runs.
+    Detach,
     /// Put the program into the background of its shell.
     Suspend,
     /// Forget what is on the terminal and draw everything again.
@@ -58,6 +62,10 @@ pub struct RunsTable {
     selected: usize,
     /// Lines of help above the screen, while it is open.
     help: Option<u16>,
+    /// Work of this program on the runs, while it goes on.
+    work: Option<Work>,
+    /// Whether it was asked what becomes of the work, and not answered yet.
+    asked: bool,
     /// What was said since the last key.
     message: Option<String>,
 }
@@ -78,6 +86,8 @@ impl RunsTable {
             reversed: false,
             selected: 0,
             help: None,
+            work: None,
+            asked: false,
             message: None,
         }
     }
@@ -96,6 +106,14 @@ impl RunsTable {
     /// Says something to the person, until the next key.
     pub fn say(&mut self, text: impl Into<String>) {
         self.message = Some(text.into());
+    }
+
+    /// The news of the runs, and of this program's work on them. Whether anything has changed.
+    pub fn take_in(&mut self, news: RunsNews) -> bool {
+        let changed = self.work != news.work;
+        self.work = news.work;
+        self.asked &= self.work.is_some();
+        self.tell(news.rows) || changed
     }
 
     /// The runs as they are now, always in the same order. Whether anything has changed.
@@ -119,6 +137,10 @@ impl RunsTable {
     /// Takes in a key; returns what is to be done about it.
     pub fn key(&mut self, key: Key) -> Option<RunsEffect> {
         self.message = None;
+        if self.asked {
+            self.asked = false;
+            return work::answer(&self.keys, key);
+        }
         // The table's keys are those of the table of a population.
         let action = self.keys.in_view(key, ViewId::Population);
         if let Some(scroll) = self.help {
@@ -146,6 +168,7 @@ impl RunsTable {
                 self.look.next_theme();
                 self.say(format!("theme: {}", self.look.theme()));
             }
+            Action::Quit if self.work.is_some() => self.asked = true,
             Action::Quit => return Some(RunsEffect::Leave),
             Action::Suspend => return Some(RunsEffect::Suspend),
             Action::Redraw => return Some(RunsEffect::Redraw),
@@ -184,7 +207,7 @@ impl RunsTable {
         let row = self.rows().get(self.selected)?;
         match (row.standing, &row.trouble) {
             (Standing::Waiting, _) => self.say("this run has not begun"),
-            (Standing::Unreadable, Some(trouble)) => self.say(trouble.clone()),
+            (Standing::Unreadable | Standing::Failed, Some(trouble)) => self.say(trouble.clone()),
             _ => return Some(RunsEffect::Open(self.selected)),
         }
         None

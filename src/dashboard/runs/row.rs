@@ -39,6 +39,8 @@ pub enum Standing {
     BrokenOff,
     /// Its folder cannot be read.
     Unreadable,
+    /// This program could not do it.
+    Failed,
     /// Evolution is over, its winner is not evaluated yet.
     Evolved,
     /// All is done.
@@ -49,10 +51,11 @@ pub enum Standing {
 
 impl Standing {
     /// All of them, what goes on and what asks for attention first.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Running,
         Self::BrokenOff,
         Self::Unreadable,
+        Self::Failed,
         Self::Evolved,
         Self::Done,
         Self::Waiting,
@@ -65,6 +68,7 @@ impl Standing {
             Self::Running => "running",
             Self::BrokenOff => "broken off",
             Self::Unreadable => "unreadable",
+            Self::Failed => "failed",
             Self::Evolved => "evolved",
             Self::Done => "done",
             Self::Waiting => "waiting",
@@ -76,7 +80,7 @@ impl Standing {
         match self {
             Self::Running => signs.running,
             Self::BrokenOff => signs.stopped,
-            Self::Unreadable => "!",
+            Self::Unreadable | Self::Failed => "!",
             Self::Evolved => signs.stepping,
             Self::Done => signs.finished,
             Self::Waiting => signs.separator,
@@ -87,7 +91,7 @@ impl Standing {
         match self {
             Self::Running => Paint::Active,
             Self::BrokenOff => Paint::Notice,
-            Self::Unreadable => Paint::Bad,
+            Self::Unreadable | Self::Failed => Paint::Bad,
             Self::Evolved | Self::Done => Paint::Good,
             Self::Waiting => Paint::Dim,
         }

@@ -8,7 +8,7 @@ use signal_hook::consts::SIGHUP;
 
 use super::{BACKGROUND, Exit, input};
 use crate::dashboard::Input;
-use crate::dashboard::runs::{RunRow, RunsEffect, RunsTable};
+use crate::dashboard::runs::{RunsEffect, RunsNews, RunsTable};
 use crate::dashboard::terminal::{Job, Terminal};
 
 /// Why a session over a table of runs is over.
@@ -25,7 +25,7 @@ pub struct RunsSession<'s> {
     table: &'s mut RunsTable,
     terminal: &'s mut Terminal,
     /// The runs, whenever somebody has looked at them.
-    rows: &'s Receiver<Vec<RunRow>>,
+    news: &'s Receiver<RunsNews>,
     /// Whether something has changed that was not drawn.
     due: bool,
 }
@@ -36,7 +36,7 @@ enum Woken {
     Job(Job),
     Drawn(io::Result<()>),
     Signal(i32),
-    Rows(Option<Vec<RunRow>>),
+    News(Option<RunsNews>),
     Time,
 }
 
@@ -46,12 +46,12 @@ impl<'s> RunsSession<'s> {
     pub fn new(
         table: &'s mut RunsTable,
         terminal: &'s mut Terminal,
-        rows: &'s Receiver<Vec<RunRow>>,
+        news: &'s Receiver<RunsNews>,
     ) -> Self {
         Self {
             table,
             terminal,
-            rows,
+            news,
             due: true,
         }
     }
@@ -104,7 +104,7 @@ impl<'s> RunsSession<'s> {
             recv(self.terminal.jobs) -> job => job.map_or(Woken::Time, Woken::Job),
             recv(self.terminal.drawn) -> drawn => drawn.map_or(Woken::Time, Woken::Drawn),
             recv(signals) -> signal => signal.map_or(Woken::Time, Woken::Signal),
-            recv(self.rows) -> rows => Woken::Rows(rows.ok()),
+            recv(self.news) -> news => Woken::News(news.ok()),
             recv(again) -> _ => Woken::Time,
         }
     }
@@ -113,10 +113,10 @@ impl<'s> RunsSession<'s> {
         let exit = match woken {
             Woken::Drawn(Err(_)) | Woken::Signal(SIGHUP) | Woken::Typed(None) => Exit::HungUp,
             Woken::Signal(signal) => Exit::Signal(signal),
-            Woken::Rows(None) => Exit::Failed,
+            Woken::News(None) => Exit::Failed,
             Woken::Typed(Some(typed)) => return self.typed(&typed),
-            Woken::Rows(Some(rows)) => {
-                self.due |= self.table.tell(rows);
+            Woken::News(Some(news)) => {
+                self.due |= self.table.take_in(news);
                 return None;
             }
             Woken::Job(Job::Resize) => {
@@ -148,6 +148,7 @@ impl<'s> RunsSession<'s> {
         match effect? {
             RunsEffect::Open(place) => return Some(RunsExit::Open(place)),
             RunsEffect::Leave => return Some(RunsExit::End(Exit::Left)),
+            RunsEffect::Detach => return Some(RunsExit::End(Exit::Detached)),
             RunsEffect::Suspend if !self.terminal.ask_to_suspend() => {
                 let why = "no shell waits that could continue the program";
                 self.table.say(why);
