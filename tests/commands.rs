@@ -30,6 +30,7 @@ const COMMANDS: &[&[&str]] = &[
     &["run"],
     &["resume"],
     &["evaluate"],
+    &["learn"],
     &["study"],
     &["study", "status"],
     &["study", "watch"],
@@ -163,6 +164,9 @@ fn evaluate_reports_every_repeat() {
         "delivered_share",
         "control_steps",
         "control_steps_per_second",
+        "returns",
+        "mean_return",
+        "return_standard_error",
     ];
     assert_fields(&result, &promised);
     assert_eq!(result["tree"], TREE);

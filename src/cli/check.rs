@@ -21,6 +21,11 @@ pub(super) struct Args {
     #[arg(required = true)]
     files: Vec<String>,
 
+    /// Check the scenarios with a setting changed, as 'maxq-lab run --set' would; may be
+    /// repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
+
     /// How to report.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -40,7 +45,11 @@ struct Report {
 
 /// Carries out the command.
 pub(super) fn main(args: &Args) -> Done {
-    let reports: Vec<_> = args.files.iter().map(|file| report(file)).collect();
+    let report = |file: &String| match Plan::is_plan(file) {
+        true => report_plan(file, &args.settings),
+        false => report_scenario(file, &args.settings),
+    };
+    let reports: Vec<_> = args.files.iter().map(report).collect();
     match args.format {
         Format::Json => output::json(&reports)?,
         Format::Text => {
@@ -58,11 +67,10 @@ pub(super) fn main(args: &Args) -> Done {
     }
 }
 
-fn report(file: &str) -> Report {
-    if Plan::is_plan(file) {
-        return report_plan(file);
-    }
-    let loaded = Scenario::load(file).map_err(|error| error.to_string());
+fn report_scenario(file: &str, settings: &[String]) -> Report {
+    let loaded = Scenario::load(file)
+        .and_then(|scenario| scenario.with_settings(settings))
+        .map_err(|error| error.to_string());
     let checked = loaded.and_then(|scenario| {
         let ready = with_world(scenario.clone(), Ready);
         ready
@@ -82,10 +90,17 @@ fn report(file: &str) -> Report {
     }
 }
 
-fn report_plan(file: &str) -> Report {
-    let (plan, error) = match Plan::load(file) {
-        Ok(plan) => (Some(plan), None),
-        Err(error) => (None, Some(error.to_string())),
+fn report_plan(file: &str, settings: &[String]) -> Report {
+    let (plan, error) = match (Plan::load(file), settings.first()) {
+        (Ok(plan), None) => (Some(plan), None),
+        (Ok(_), Some(found)) => (
+            None,
+            Some(format!(
+                "--set: found {found:?} for the plan {file}; allowed: for scenarios, since the \
+                 settings of a plan are those of its arms"
+            )),
+        ),
+        (Err(error), _) => (None, Some(error.to_string())),
     };
     Report {
         file: file.to_owned(),

@@ -10,7 +10,7 @@ use super::output::{Done, Failure, Format};
 use super::progress::bar;
 use super::source::Source;
 use crate::evolution::{Experiment, Workers, read_tree};
-use crate::lab::{Evaluation, Protocol, WorldTask, evaluate};
+use crate::lab::{Protocol, Scored, WorldTask, evaluate};
 use crate::learning::Gate;
 use crate::worlds::World;
 
@@ -63,7 +63,7 @@ pub(super) struct Args {
 #[derive(Serialize)]
 struct Report {
     #[serde(flatten)]
-    evaluation: Evaluation,
+    scored: Scored,
     control_steps_per_second: f64,
 }
 
@@ -98,33 +98,38 @@ impl WorldTask for Task {
         let bar = bar(self.args.repeats, true);
         bar.set_message("repeats");
         let show = |done| bar.set_position(done as u64);
-        let evaluation = evaluate(&experiment, &tree, &protocol, &workers, &self.gate, show)?;
+        let scored = evaluate(&experiment, &tree, &protocol, &workers, &self.gate, show)?;
         bar.finish_and_clear();
         let computed = self.gate.control_steps() as f64;
         Ok(Report {
             control_steps_per_second: computed / started.elapsed().as_secs_f64(),
-            evaluation,
+            scored,
         })
     }
 }
 
 fn describe(report: &Report) -> String {
-    let evaluation = &report.evaluation;
-    let error = match evaluation.standard_error {
-        Some(error) => format!("{error:.1} (standard error)"),
+    let scored = &report.scored;
+    let evaluation = &scored.evaluation;
+    let error = |error: Option<f64>, digits: usize| match error {
+        Some(error) => format!("{error:.digits$} (standard error)"),
         None => String::from("unknown, from a single repeat"),
     };
     format!(
-        "{}\n{:.1} +- {error} time steps a trial, {} repeats of {} scored trials\n\
+        "{}\n{:.1} +- {} time steps a trial, {} repeats of {} scored trials\n\
+         {:.2} +- {} return of a trial, the sum of its rewards\n\
          {:.2} % of the trials delivered\n{} control steps, {:.0} a second with the training of \
          the primitive subtasks\n",
         evaluation.tree,
         evaluation.mean,
+        error(evaluation.standard_error, 1),
         evaluation.repeats.len(),
         evaluation
             .repeats
             .first()
             .map_or(0, |repeat| repeat.steps.len()),
+        scored.mean_return,
+        error(scored.return_standard_error, 2),
         100.0 * evaluation.delivered_share,
         evaluation.control_steps,
         report.control_steps_per_second,

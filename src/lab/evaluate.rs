@@ -54,6 +54,21 @@ pub struct Evaluation {
     pub control_steps: u64,
 }
 
+/// An evaluation with what its scored trials earned: foraging counts time steps, in other
+/// worlds these do not tell the whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Scored {
+    /// The evaluation.
+    #[serde(flatten)]
+    pub evaluation: Evaluation,
+    /// Return of each scored trial - the sum of its rewards -, by repeat.
+    pub returns: Vec<Vec<f64>>,
+    /// Mean return of a scored trial.
+    pub mean_return: f64,
+    /// Its standard error, as that of the time steps.
+    pub return_standard_error: Option<f64>,
+}
+
 /// Evaluates the structure `tree`; `progress` is told how many repeats are done.
 ///
 /// # Errors
@@ -65,7 +80,7 @@ pub fn evaluate<W: World>(
     workers: &Workers,
     gate: &Gate,
     progress: impl Fn(usize) + Sync,
-) -> Result<Evaluation, Stopped> {
+) -> Result<Scored, Stopped> {
     let banks = (0..protocol.banks)
         .map(|bank| experiment.train(protocol.seed, bank as u64, workers, gate))
         .collect::<Result<Vec<_>, _>>()?;
@@ -76,21 +91,40 @@ pub fn evaluate<W: World>(
         progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         Ok(scored)
     })?;
-    let control_steps = repeats.iter().map(|(_, steps)| steps).sum();
-    let repeats: Vec<_> = repeats.into_iter().map(|(repeat, _)| repeat).collect();
-    let means: Vec<_> = repeats
-        .iter()
-        .map(|repeat| (repeat.bank, repeat.mean()))
-        .collect();
-    let delivered: usize = repeats.iter().map(|repeat| repeat.delivered).sum();
-    Ok(Evaluation {
-        tree: to_text(tree, experiment.catalogue()),
-        mean: means.iter().map(|(_, mean)| mean).sum::<f64>() / means.len() as f64,
-        standard_error: standard_error(&means),
-        delivered_share: delivered as f64 / (protocol.repeats * protocol.trials) as f64,
-        repeats,
-        control_steps,
+    let control_steps = repeats.iter().map(|life| life.control_steps).sum();
+    let means = |of: fn(&Life) -> f64| -> Vec<(usize, f64)> {
+        let means = repeats.iter().map(|life| (life.repeat.bank, of(life)));
+        means.collect()
+    };
+    let steps = means(|life| mean(life.repeat.steps.iter().map(|&steps| f64::from(steps))));
+    let returns = means(|life| mean(life.returns.iter().copied()));
+    let delivered: usize = repeats.iter().map(|life| life.repeat.delivered).sum();
+    let (repeats, all_returns) = repeats
+        .into_iter()
+        .map(|life| (life.repeat, life.returns))
+        .unzip();
+    Ok(Scored {
+        evaluation: Evaluation {
+            tree: to_text(tree, experiment.catalogue()),
+            mean: mean(steps.iter().map(|(_, mean)| *mean)),
+            standard_error: standard_error(&steps),
+            delivered_share: delivered as f64 / (protocol.repeats * protocol.trials) as f64,
+            repeats,
+            control_steps,
+        },
+        returns: all_returns,
+        mean_return: mean(returns.iter().map(|(_, mean)| *mean)),
+        return_standard_error: standard_error(&returns),
     })
+}
+
+/// One repeat, with what is not kept of it.
+struct Life {
+    repeat: Repeat,
+    /// Return of each scored trial.
+    returns: Vec<f64>,
+    /// Control steps of all trials.
+    control_steps: u64,
 }
 
 fn one_repeat<W: World>(
@@ -100,37 +134,36 @@ fn one_repeat<W: World>(
     repeat: usize,
     skills: &Skills,
     gate: &Gate,
-) -> Result<(Repeat, u64), Stopped> {
+) -> Result<Life, Stopped> {
     let limit = experiment.scenario.evolution.trial_step_limit;
     let mut rng = stream(protocol.seed, 0, repeat as u64, Purpose::Evaluation);
     let newborn = experiment.newborn(tree.clone());
     let mut agent = experiment.agent(newborn, skills.clone());
-    let mut control_steps = 0;
-    let mut scored = Repeat {
-        steps: Vec::with_capacity(protocol.trials),
-        delivered: 0,
-        bank: repeat % protocol.banks,
+    let mut life = Life {
+        repeat: Repeat {
+            steps: Vec::with_capacity(protocol.trials),
+            delivered: 0,
+            bank: repeat % protocol.banks,
+        },
+        returns: Vec::with_capacity(protocol.trials),
+        control_steps: 0,
     };
     for trial in 0..protocol.warmup + protocol.trials {
         let start = experiment.world.draw_start(&mut rng);
         let over = agent.run_trial(&start, limit, &mut rng, gate)?;
-        control_steps += u64::from(over.steps);
+        life.control_steps += u64::from(over.steps);
         if trial >= protocol.warmup {
-            scored.steps.push(over.steps);
-            scored.delivered += usize::from(over.done);
+            life.repeat.steps.push(over.steps);
+            life.repeat.delivered += usize::from(over.done);
+            life.returns.push(over.reward);
         }
     }
-    Ok((scored, control_steps))
+    Ok(life)
 }
 
-impl Repeat {
-    fn mean(&self) -> f64 {
-        self.steps
-            .iter()
-            .map(|&steps| f64::from(steps))
-            .sum::<f64>()
-            / self.steps.len() as f64
-    }
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let n = values.len() as f64;
+    values.sum::<f64>() / n
 }
 
 /// Standard error of the mean of grouped values, from the variance components of a

@@ -28,7 +28,7 @@ mod worlds;
 pub use checkpoint::{Checkpoint, LogPosition};
 pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
-pub use evaluate::{Evaluation, Protocol, Repeat, evaluate};
+pub use evaluate::{Evaluation, Protocol, Repeat, Scored, evaluate};
 pub use event::{Ending, Event};
 pub use folder::{FolderError, Keep, RunFolder};
 pub use learn::{

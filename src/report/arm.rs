@@ -1,5 +1,6 @@
 //! The arms of a study: what is done with each scenario.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::evolution::Experiment;
@@ -11,10 +12,11 @@ use crate::scenario::{
 use crate::worlds::{Catalogue, World};
 
 /// One arm: a base and named settings.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Arm {
     /// Its name, used in folders; of the letters that scenario names are made of.
+    #[schemars(regex(pattern = r"^[a-z0-9_][a-z0-9_.-]{0,63}$"))]
     pub name: String,
     /// What it does.
     #[serde(default)]
@@ -29,7 +31,7 @@ pub struct Arm {
 /// The arms without crossover have no end of their own. They get as many generations as
 /// the evolved run of the same scenario, settings and seed has, and with as many
 /// individuals and trials in each: a *matched* budget.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Base {
     /// The method: evolution as the scenario says.

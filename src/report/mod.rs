@@ -17,6 +17,7 @@ mod numbers;
 mod pace;
 mod plan;
 mod plan_error;
+mod plan_file;
 mod provenance;
 pub mod run_export;
 mod runner;

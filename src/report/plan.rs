@@ -3,12 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::arm::{Arm, Base};
 use super::numbers::Numbers;
 use super::plan_error::PlanError;
+use super::plan_file::PlanFile;
 use super::study::PLAN_FILE;
 use crate::files::{read_text, stated_format};
 use crate::scenario::{EMBEDDED_PLANS, Scenario};
@@ -44,16 +46,20 @@ pub struct Plan {
 /// How the winner of a run is evaluated anew: fresh hierarchies of its structure, fresh
 /// trials, freshly trained sets of primitive subtasks, by seeds that no run uses and that
 /// all arms share.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Reevaluation {
     /// Trials of each repeat before scoring starts.
+    #[schemars(range(min = 0, max = 10_000))]
     pub warmup: usize,
     /// Scored trials of each repeat.
+    #[schemars(range(min = 1, max = 10_000))]
     pub trials: usize,
     /// Fresh hierarchies.
+    #[schemars(range(min = 2, max = 10_000))]
     pub repeats: usize,
     /// Freshly trained sets of primitive subtasks that the repeats are spread over.
+    #[schemars(range(min = 1, max = 10_000))]
     pub banks: usize,
 }
 
@@ -68,25 +74,6 @@ impl Default for Reevaluation {
             banks: 4,
         }
     }
-}
-
-/// A plan as it may be written.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PlanFile {
-    format: u32,
-    name: String,
-    #[serde(default)]
-    description: String,
-    /// Names, file names relative to the plan's folder, or whole scenarios.
-    scenarios: Vec<Value>,
-    seeds: Numbers,
-    /// Names of bases, or whole arms.
-    arms: Vec<Value>,
-    #[serde(default)]
-    control: Option<String>,
-    #[serde(default)]
-    reevaluation: Reevaluation,
 }
 
 impl Plan {
@@ -138,44 +125,22 @@ impl Plan {
     /// # Errors
     /// When it is not a plan that can be carried out.
     pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, PlanError> {
-        let invalid = |place: String, message: String| PlanError::Invalid {
-            file: file.to_owned(),
-            place,
-            message,
-        };
         if let Some(found) = stated_format(text).filter(|&format| format != PLAN_FORMAT) {
-            let message = format!("found {found}; allowed: {PLAN_FORMAT}");
-            return Err(invalid(String::from("format"), message));
-        }
-        let mut json = serde_json::Deserializer::from_str(text);
-        let plan: PlanFile = serde_path_to_error::deserialize(&mut json)
-            .map_err(|error| invalid(place(error.path()), error.inner().to_string()))?;
-        json.end()
-            .map_err(|error| invalid(String::from("the end of the plan"), error.to_string()))?;
-        let scenarios = plan.scenarios.iter().enumerate().map(|(index, value)| {
-            let place = format!("{file}: scenarios[{index}]");
-            scenario(value, &place, folder).map_err(|source| PlanError::Scenario {
+            return Err(PlanError::Invalid {
                 file: file.to_owned(),
-                index,
-                source: Box::new(source),
-            })
-        });
-        let scenarios = scenarios.collect::<Result<_, _>>()?;
-        let arms = plan.arms.into_iter().enumerate().map(|(index, value)| {
-            arm(value).map_err(|message| invalid(format!("arms[{index}]"), message))
-        });
-        let arms = arms.collect::<Result<_, _>>()?;
-        Self {
-            format: plan.format,
-            name: plan.name,
-            description: plan.description,
-            scenarios,
-            seeds: plan.seeds,
-            arms,
-            control: plan.control,
-            reevaluation: plan.reevaluation,
+                place: String::from("format"),
+                message: format!("found {found}; allowed: {PLAN_FORMAT}"),
+            });
         }
-        .checked(file)
+        PlanFile::parse(text, file)?
+            .write_out(file, folder)?
+            .checked(file)
+    }
+
+    /// The JSON Schema of plans.
+    #[must_use]
+    pub fn schema() -> schemars::Schema {
+        schemars::schema_for!(PlanFile)
     }
 
     /// A plan for scenarios given by name. The control is `random_selection` if it is
@@ -324,40 +289,4 @@ fn file_of(name: &str) -> Option<PathBuf> {
     [path.join(PLAN_FILE), path]
         .into_iter()
         .find(|path| path.is_file())
-}
-
-fn place(path: &serde_path_to_error::Path) -> String {
-    match path.to_string().as_str() {
-        "." | "?" => String::from("the top level"),
-        path => path.to_owned(),
-    }
-}
-
-fn scenario(
-    value: &Value,
-    place: &str,
-    folder: &Path,
-) -> Result<Scenario, crate::scenario::ScenarioError> {
-    match value {
-        Value::String(name) => {
-            let beside = folder.join(name);
-            match beside.is_file() {
-                true => Scenario::read(&beside),
-                false => Scenario::load(name),
-            }
-        }
-        whole => Scenario::parse(&whole.to_string(), place),
-    }
-}
-
-fn arm(value: Value) -> Result<Arm, String> {
-    match &value {
-        Value::String(name) => {
-            let base = Base::find(name);
-            base.map(Arm::of)
-                .ok_or_else(|| format!("found {name:?}; allowed: {}, or an arm", Base::names()))
-        }
-        _ => serde_path_to_error::deserialize(value)
-            .map_err(|error| format!("{}: {}", error.path(), error.inner())),
-    }
 }

@@ -357,7 +357,7 @@ impl WorldTask for Evaluate<'_> {
         let tree =
             read_tree(self.tree, experiment.catalogue(), depth).map_err(Unevaluated::Tree)?;
         let workers = Workers::new(1).map_err(|error| Unevaluated::Threads(error.to_string()))?;
-        let evaluation = evaluate(
+        let scored = evaluate(
             &experiment,
             &tree,
             self.protocol,
@@ -365,6 +365,7 @@ impl WorldTask for Evaluate<'_> {
             self.gate,
             |_| {},
         );
+        let evaluation = scored.map(|scored| scored.evaluation);
         evaluation.map_err(|_| Unevaluated::Stopped)
     }
 }

@@ -10,16 +10,17 @@ pub struct Embedded {
 }
 
 macro_rules! embedded {
-    ($($name:literal),+ $(,)?) => {
-        /// All embedded scenarios.
-        pub const EMBEDDED: &[Embedded] = &[$(Embedded {
+    ($folder:literal: $($name:literal),+ $(,)?) => {
+        &[$(Embedded {
             name: $name,
-            json: include_str!(concat!("../../scenarios/", $name, ".json")),
-        }),+];
+            json: include_str!(concat!("../../scenarios/", $folder, $name, ".json")),
+        }),+]
     };
 }
 
-embedded![
+/// All embedded scenarios.
+pub const EMBEDDED: &[Embedded] = embedded![
+    "":
     "environment-1",
     "environment-2",
     "environment-3",
@@ -30,10 +31,7 @@ embedded![
 ];
 
 /// All embedded plans of studies; the names of their scenarios are those of embedded ones.
-pub const EMBEDDED_PLANS: &[Embedded] = &[Embedded {
-    name: "thesis",
-    json: include_str!("../../scenarios/studies/thesis.json"),
-}];
+pub const EMBEDDED_PLANS: &[Embedded] = embedded!["studies/": "thesis", "evolving-taxi"];
 
 /// The names of the embedded scenarios, for messages.
 pub(super) fn names() -> String {

@@ -2,7 +2,9 @@
 
 use maxq_lab::dashboard::keys::{Action, Key, KeyMap};
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
-use maxq_lab::dashboard::{FrameFormat, RunRow, RunsEffect, RunsTable, Standing, render};
+use maxq_lab::dashboard::{
+    FrameFormat, RunRow, RunsEffect, RunsNews, RunsTable, Standing, Work, render,
+};
 use maxq_lab::hierarchy::Glyphs;
 use proptest::prelude::*;
 
@@ -117,6 +119,27 @@ fn the_same_rows_again_are_no_news() {
     let mut changed = rows();
     changed[3].generations += 1;
     assert!(table.tell(changed));
+}
+
+/// Work of the program itself is never ended without a question, and nothing is asked once it
+/// is over.
+#[test]
+fn work_under_way_is_asked_about() {
+    let mut table = blank("dark", Glyphs::Unicode, (80, 24));
+    let left = Some(std::time::Duration::from_secs(754));
+    let news = |work| RunsNews { rows: rows(), work };
+    assert!(table.take_in(news(Some(Work { left }))));
+    assert!(!table.take_in(news(Some(Work { left }))));
+    assert!(text(&table).contains("about 12 min left"));
+    assert_eq!(press(&mut table, "q"), None);
+    assert_frame("runs_question_80x24", &table.frame());
+    assert_eq!(press(&mut table, "n enter"), Some(RunsEffect::Open(0)));
+    assert_eq!(press(&mut table, "q d"), Some(RunsEffect::Detach));
+    assert_eq!(press(&mut table, "q y"), Some(RunsEffect::Leave));
+    assert_eq!(press(&mut table, "q"), None);
+    assert!(table.take_in(news(None)));
+    assert!(!text(&table).contains("Question"));
+    assert_eq!(press(&mut table, "q"), Some(RunsEffect::Leave));
 }
 
 fn value() -> impl Strategy<Value = f64> {

@@ -1,5 +1,6 @@
 //! The table of a study's runs: opened, gone into, come back from, left.
 
+use std::fs;
 use std::path::Path;
 use std::process::{Child, Stdio};
 
@@ -7,17 +8,22 @@ use maxq_lab::report::{Arm, Base, Plan, Study};
 
 use crate::common::{SHORT, program as plain_program};
 use crate::pty::{Pty, program};
-use crate::{ENDLESS, wait_for_end};
+use crate::{ENDLESS, wait_for_end, wait_until};
 
-/// A study of one run with settings, done by another process.
-fn study(settings: &[&str], folder: &str) -> Child {
+/// The folder of a study of an arm with settings.
+fn create(settings: &[&str], seeds: &str, folder: &str) -> Study {
     let settings = SHORT.iter().chain(settings).copied().map(String::from);
     let arm = Arm {
         settings: settings.collect(),
         ..Arm::of(Base::Evolved)
     };
-    let plan = Plan::of(&[String::from("smoke")], "1".parse().unwrap(), vec![arm]).unwrap();
-    Study::create(plan, Path::new(folder)).unwrap();
+    let plan = Plan::of(&[String::from("smoke")], seeds.parse().unwrap(), vec![arm]).unwrap();
+    Study::create(plan, Path::new(folder)).unwrap()
+}
+
+/// A study of one run with settings, done by another process.
+fn study(settings: &[&str], folder: &str) -> Child {
+    create(settings, "1", folder);
     let mut command = plain_program();
     command.args(["study", &format!("{folder}/study.json")]);
     command.args(["--headless", "--jobs", "1", "--out", folder]);
@@ -76,4 +82,107 @@ fn a_folder_without_a_study_is_refused_before_the_screen_is_taken() {
     pty.wait_for("holds no study.json");
     wait_for_end(&mut pty, 1);
     pty.wait_given_back();
+}
+
+/// What a program does on the runs of a study is shown, asked about, and the same bytes
+/// however often it is left and gone on with.
+#[test]
+fn a_study_is_left_and_gone_on_with() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = |name: &str| parent.path().join(name).display().to_string();
+    let (shown, whole) = (folder("shown"), folder("whole"));
+    create(&[], "1..20", &shown);
+    let study = create(&[], "1..20", &whole);
+    let start = |size: (u16, u16)| {
+        let arguments = ["study", &shown, "--jobs", "1"];
+        Pty::start(size.0, size.1, program(&arguments))
+    };
+    let mut pty = start((80, 24));
+    let second = Path::new(&shown).join(study.name(&study.runs()[1]));
+    wait_until("the second run", || second.join("run.json").exists());
+    pty.signal("TERM");
+    wait_for_end(&mut pty, 143);
+    pty.wait_given_back();
+    pty.wait_for("the same command goes on");
+
+    let mut pty = start((120, 40));
+    pty.wait_for("20 done");
+    pty.wait_for("DONE");
+    assert!(pty.is_taken(), "the table stays when all is done");
+    // Nothing is left that could be stopped.
+    pty.press("q");
+    wait_for_end(&mut pty, 0);
+    pty.wait_for("20 of 20 runs done");
+
+    let headless = ["study", &whole, "--headless"];
+    assert!(plain_program().args(headless).status().unwrap().success());
+    for run in study.runs() {
+        for file in ["events.jsonl", "checkpoint.json", "evaluation.json"] {
+            let of = |folder: &str| fs::read(Path::new(folder).join(study.name(&run)).join(file));
+            assert!(of(&shown).unwrap() == of(&whole).unwrap(), "{file}");
+        }
+    }
+}
+
+#[test]
+fn who_leaves_a_study_is_asked_what_becomes_of_it() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("study").display().to_string();
+    create(ENDLESS, "1", &folder);
+    let start = || Pty::start(80, 24, program(&["study", &folder, "--jobs", "1"]));
+    let mut pty = start();
+    pty.wait_for("1 running");
+    pty.press("\r");
+    pty.wait_for("WATCHING");
+    pty.press("q");
+    pty.wait_for("1 running");
+    pty.press("q");
+    pty.wait_for("Stop them?");
+    pty.press("n");
+    pty.wait_gone("Stop them?");
+    pty.press("q");
+    pty.wait_for("Stop them?");
+    pty.press("y");
+    wait_for_end(&mut pty, 0);
+    pty.wait_given_back();
+    pty.wait_for("0 of 1 runs done");
+
+    let mut pty = start();
+    pty.wait_for("1 running");
+    pty.press("q");
+    pty.wait_for("go on with a progress bar");
+    pty.press("d");
+    pty.wait_given_back();
+    pty.wait_for("0/1");
+    pty.signal("HUP");
+    let status = || {
+        let mut command = plain_program();
+        let output = command.args(["study", "status", &folder]).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert!(
+        status().contains("1 running"),
+        "a dropped line stops nothing"
+    );
+    pty.signal("TERM");
+    wait_for_end(&mut pty, 143);
+    assert!(status().contains("1 interrupted"));
+}
+
+#[test]
+fn a_run_that_cannot_be_done_says_why_in_the_table_and_at_the_end() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("study").display().to_string();
+    let study = create(&[], "1", &folder);
+    let run = study.run_folder(&study.runs()[0]);
+    fs::create_dir_all(run.parent().unwrap()).unwrap();
+    fs::write(&run, "not a folder").unwrap();
+    let mut pty = Pty::start(120, 40, program(&["study", &folder]));
+    pty.wait_for("1 failed");
+    pty.press("\r");
+    pty.wait_for("error: smoke/evolved/seed-1: ");
+    pty.press("q");
+    wait_for_end(&mut pty, 1);
+    pty.wait_given_back();
+    pty.wait_for("0 of 1 runs done");
 }

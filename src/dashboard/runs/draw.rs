@@ -109,7 +109,7 @@ impl RunsTable {
         let (name, folder) = (one_line(&self.name), one_line(&self.folder));
         let text = format!(" Study {name} {} {folder}", look.signs.separator);
         let left = self.work.and_then(super::Work::words).unwrap_or_default();
-        let right = width(&left) + 1;
+        let right = width(&left) + usize::from(!left.is_empty());
         let room = usize::from(area.width.saturating_sub(column)).saturating_sub(right);
         let text = fitted(&text, room, look.signs);
         put(buffer, area, (column, 0), &text, look.style(Paint::Text));

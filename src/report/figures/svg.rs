@@ -109,6 +109,8 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         .y_desc(&chart.y)
         .x_labels(8)
         .y_labels(7)
+        .x_label_formatter(&tick)
+        .y_label_formatter(&tick)
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .label_style((FONT, 11))
@@ -128,6 +130,15 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         put(&legend, &series.name, (18, y - 6), 11, HPos::Left)?;
     }
     Ok(())
+}
+
+/// The number at a tick of an axis, without digits that say nothing.
+fn tick(value: &f64) -> String {
+    let text = format!("{value:.4}");
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => String::from("0"),
+        text => text.to_owned(),
+    }
 }
 
 /// Composite subtasks in boxes with a bold border, primitive ones without.
@@ -206,4 +217,16 @@ fn wrapped(text: &str) -> Vec<String> {
 
 fn words(error: impl std::fmt::Display) -> String {
     error.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tick;
+
+    #[test]
+    fn ticks_have_the_digits_that_they_need() {
+        let numbers = [5.0, 100.0, -0.0, 0.1 + 0.2, -12.5, -1e-9];
+        let ticks: Vec<_> = numbers.iter().map(tick).collect();
+        assert_eq!(ticks, ["5", "100", "0", "0.3", "-12.5", "0"]);
+    }
 }
