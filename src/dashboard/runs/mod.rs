@@ -180,7 +180,7 @@ impl RunsTable {
     /// Selects the run at a place of the screen. Whether it was selected before.
     pub(super) fn click(&mut self, at: Position) -> bool {
         self.message = None;
-        if self.help.take().is_some() {
+        if self.help.take().is_some() || std::mem::take(&mut self.asked) {
             return false;
         }
         let (width, height) = self.size;
