@@ -29,7 +29,7 @@ pub(super) struct Show {
     #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = frames)]
     fps: f64,
 
-    /// Let the mouse scroll; the terminal then selects text with Shift alone.
+    /// Let the mouse select, open and scroll; the terminal then selects text with Shift alone.
     #[arg(long)]
     mouse: bool,
 }

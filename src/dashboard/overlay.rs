@@ -7,7 +7,7 @@ use ratatui::widgets::{Clear, Widget};
 use super::desk::Desk;
 use super::input::Effect;
 use super::keys::{Action, KeyMap, Scope};
-use super::look::{Look, Paint, fitted, put, width};
+use super::look::{Look, Paint, fitted, put, width, wrapped};
 use super::panel::panel;
 use super::views::ViewId;
 
@@ -135,13 +135,21 @@ pub(super) fn scrolled(
     Some(scroll.saturating_add_signed(by).min(most))
 }
 
+/// Longest line of a text that is read easily.
+const READABLE: usize = 88;
+
 /// What there is to see, and all keys that do something there.
 pub(super) fn help_lines(desk: &Desk, view: ViewId, lessons: &[(&str, &str)]) -> Vec<Line> {
     let mut lines = Vec::new();
+    // Border, and a blank on either side.
+    let columns = usize::from(desk.size.0.saturating_sub(4)).min(READABLE);
     for (title, lesson) in lessons {
         lines.push((String::new(), (*title).to_owned(), Paint::Title));
-        lines.extend(lesson.lines().map(plain));
-        lines.push(plain(""));
+        for paragraph in lesson.split("\n\n") {
+            let text = paragraph.replace('\n', " ");
+            lines.extend(wrapped(&text, columns, "").iter().map(|line| plain(line)));
+            lines.push(plain(""));
+        }
     }
     let here = |scope: Scope| match scope {
         Scope::In(views) => view == ViewId::Overview || views.contains(&view),

@@ -69,9 +69,9 @@ pub fn fitted_parts(text: &str, columns: usize, signs: &Signs) -> String {
 }
 
 /// A text in lines of at most so many columns, broken between words; all lines but the first
-/// are set in by two.
+/// begin with an indent.
 #[must_use]
-pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
+pub fn wrapped(text: &str, columns: usize, indent: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
         match lines.last_mut() {
@@ -79,7 +79,7 @@ pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
                 line.push(' ');
                 line.push_str(word);
             }
-            Some(_) => lines.push(format!("  {word}")),
+            Some(_) => lines.push(format!("{indent}{word}")),
             None => lines.push(word.to_owned()),
         }
     }
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(fitted("ApproachNest", 8, &ASCII), "Approac~");
         assert_eq!(fitted("abc", 3, &ASCII), "abc");
         assert_eq!(fitted("abc", 0, &ASCII), "");
-        assert_eq!(wrapped("scored 1 22 3", 9), ["scored 1", "  22 3"]);
+        assert_eq!(wrapped("scored 1 22 3", 9, "  "), ["scored 1", "  22 3"]);
         assert_eq!(fitted_end("runs/taxi", 5, &UNICODE), "…taxi");
         assert_eq!(fitted_parts("id 7 · halted", 12, &UNICODE), "id 7");
         assert_eq!(fitted_parts("id 7 · halted", 13, &UNICODE), "id 7 · halted");

@@ -279,7 +279,7 @@ fn draw_story(desk: &Desk, individual: &RankedRecord, area: Rect, buffer: &mut B
     let look = &desk.look;
     let room = usize::from(area.width.saturating_sub(3));
     let lines = story(individual).into_iter().flat_map(|(text, paint)| {
-        let lines = wrapped(&one_line(&text), room);
+        let lines = wrapped(&one_line(&text), room, "  ");
         lines.into_iter().map(move |line| (line, paint))
     });
     for (row, (text, paint)) in (0..area.height).zip(lines) {
