@@ -101,9 +101,9 @@ pub struct Snapshot {
     pub readings: Vec<Reading>,
     /// The type of the state; the catalogue's terminal type when the task is done.
     pub state_type: StateType,
-    /// Which of the [`variants`](Scenic::variants) is the case, by index; `None` when the
-    /// task is done.
-    pub variant: Option<usize>,
+    /// Which of the [`variants`](Scenic::variants) is the case, by index; the last one when
+    /// the task is done.
+    pub variant: usize,
 }
 
 /// Inputs along which learned values are drawn, one after the other or in rows.

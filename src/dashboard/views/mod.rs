@@ -230,8 +230,9 @@ fn nothing_yet(desk: &Desk, area: Rect, buffer: &mut Buffer) {
 /// of cells.
 fn case<'d>(desk: &'d Desk, snapshot: &Snapshot) -> Option<&'d str> {
     desk.scenery().grid?;
+    let is_done = snapshot.state_type == desk.catalogue().terminal();
     let variants = desk.bench.variants();
-    let case = variants.get(snapshot.variant?);
+    let case = variants.get(snapshot.variant).filter(|_| !is_done);
     case.filter(|_| variants.len() > 1).map(String::as_str)
 }
 

@@ -38,8 +38,7 @@ pub trait Rollout: Send {
     fn temperatures(&self) -> Vec<Option<f32>>;
 
     /// What the agent would do in each cell, with what it has learned so far, while all but
-    /// its place is as it is now; `None` where the world has no cells, and when the task is
-    /// done.
+    /// its place is as it is now; `None` where the world has no cells.
     fn cells(&self) -> Option<PolicyMap>;
 }
 
@@ -264,7 +263,7 @@ impl<W: Scenic> Rollout for WorldRollout<W> {
         let [columns, rows] = world.scenery().grid?;
         let view = MapView {
             heading: 0.0,
-            variant: self.snapshot().variant?,
+            variant: self.snapshot().variant,
             columns,
             rows,
         };

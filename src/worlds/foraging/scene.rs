@@ -74,9 +74,8 @@ impl Scenic for ForagingWorld {
             readings: self.readings(state),
             state_type: self.state_type(state),
             variant: match task {
-                Task::EmptyHanded => Some(0),
-                Task::Carrying(_) => Some(1),
-                Task::Delivered(_) => None,
+                Task::EmptyHanded => 0,
+                Task::Carrying(_) | Task::Delivered(_) => 1,
             },
         }
     }

@@ -155,15 +155,13 @@ impl TaxiWorld {
         places.flat_map(move |place| stands.clone().map(move |destination| (place, destination)))
     }
 
-    fn variant(&self, state: &TaxiState) -> Option<usize> {
-        let rides = state.passenger == Passenger::Boarded;
-        let passenger = if rides {
-            Passenger::Riding
-        } else {
-            state.passenger
+    fn variant(&self, state: &TaxiState) -> usize {
+        let passenger = match state.passenger {
+            Passenger::Waiting(stand) => Passenger::Waiting(stand),
+            Passenger::Boarded | Passenger::Riding | Passenger::Delivered => Passenger::Riding,
         };
         let task = (passenger, state.destination);
-        self.tasks().position(|known| known == task)
+        self.tasks().position(|known| known == task).unwrap_or(0)
     }
 
     fn words(&self, passenger: Passenger, destination: u8) -> String {
