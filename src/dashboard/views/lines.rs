@@ -143,7 +143,10 @@ pub(super) fn told_apart(one: f32, other: f32) -> [String; 2] {
     let texts = |decimals| [one, other].map(|value| fixed(value, decimals));
     let mut some = (decimals([one, other])..=6).map(texts);
     let apart = some.find(|[one, other]| one != other);
-    apart.unwrap_or_else(|| [one, other].map(|value| format!("{value:e}")))
+    apart.unwrap_or_else(|| match one.abs().max(other.abs()) {
+        size if size < 1e-6 => [one, other].map(|value| format!("{value:.1e}")),
+        _ => [one, other].map(|value| format!("{value:e}")),
+    })
 }
 
 /// What rounds to nothing has no sign.
@@ -179,6 +182,7 @@ mod tests {
         assert_eq!(fixed(-0.00004, 4), "0.0000");
         assert_eq!(told_apart(-3.50001, -3.50002), ["-3.50001", "-3.50002"]);
         assert_eq!(told_apart(1.0, 2.0), ["1.000", "2.000"]);
+        assert_eq!(told_apart(5.783e-39, 2.891e-39), ["5.8e-39", "2.9e-39"]);
         for value in [f32::MAX, f32::MIN, f32::NAN, f32::MIN_POSITIVE] {
             assert!(number(value).len() <= 8);
         }

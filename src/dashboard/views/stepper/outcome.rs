@@ -137,7 +137,8 @@ fn updates(shown: &Shown<'_>, updates: &[Update], listed: usize) -> Vec<Line<'st
     if let [between @ .., last] = far {
         if !between.is_empty() {
             let left_out = between.len();
-            let text = format!("{} and {left_out} more states", shown.look.signs.ellipsis);
+            let states = if left_out == 1 { "state" } else { "states" };
+            let text = format!("{} and {left_out} more {states}", shown.look.signs.ellipsis);
             lines.push(Pen::new(shown.look).to(2).text(text, Paint::Dim).line());
         }
         lines.push(line(last));
