@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use common::{SHORT, output, program, set, stderr, stdout, threads, wait_until};
 use maxq_lab::lab::start;
 use maxq_lab::random::{Purpose, stream};
-use maxq_lab::scenario::{EMBEDDED, Scenario};
+use maxq_lab::scenario::{EMBEDDED, EMBEDDED_PLANS, Scenario};
 use rand::RngExt;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -326,6 +326,7 @@ fn embedded_scenarios_run_in_any_folder() {
         names,
         EMBEDDED
             .iter()
+            .chain(EMBEDDED_PLANS)
             .map(|embedded| embedded.name)
             .collect::<Vec<_>>()
     );

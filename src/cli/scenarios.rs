@@ -1,13 +1,15 @@
-//! `maxq-lab scenarios`: the embedded scenarios.
+//! `maxq-lab scenarios`: the embedded scenarios and plans.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
 
 use super::output::{self, Done, Format};
+use crate::report::Plan;
 use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Scenario};
 
-/// List the embedded scenarios, or print one, or the plan of the embedded study, 'thesis'.
+/// List the embedded scenarios and plans of studies, or print one.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Example:
@@ -24,7 +26,15 @@ pub(super) struct Args {
 #[derive(Serialize)]
 struct Row {
     name: &'static str,
+    kind: Kind,
     description: String,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Kind {
+    Scenario,
+    Plan,
 }
 
 /// Carries out the command.
@@ -44,20 +54,38 @@ pub(super) fn main(args: &Args) -> Done {
         output::text(embedded.json)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut rows = Vec::new();
-    for embedded in EMBEDDED {
-        rows.push(Row {
-            name: embedded.name,
-            description: Scenario::parse(embedded.json, embedded.name)?.description,
-        });
-    }
+    let rows = rows()?;
     match args.format {
         Format::Json => output::json(&rows)?,
         Format::Text => {
-            for Row { name, description } in rows {
-                output::text(&format!("{name:15} {description}\n"))?;
+            let mut kind = Kind::Scenario;
+            for row in rows {
+                if row.kind != kind {
+                    output::text("\nplans, for 'maxq-lab study':\n")?;
+                    kind = row.kind;
+                }
+                output::text(&format!("{:15} {}\n", row.name, row.description))?;
             }
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn rows() -> Result<Vec<Row>, Box<dyn std::error::Error>> {
+    let scenarios = EMBEDDED.iter().map(|embedded| {
+        Ok(Row {
+            name: embedded.name,
+            kind: Kind::Scenario,
+            description: Scenario::parse(embedded.json, embedded.name)?.description,
+        })
+    });
+    let plans = EMBEDDED_PLANS.iter().map(|embedded| {
+        let plan = Plan::parse(embedded.json, embedded.name, Path::new(""))?;
+        Ok(Row {
+            name: embedded.name,
+            kind: Kind::Plan,
+            description: plan.description,
+        })
+    });
+    scenarios.chain(plans).collect()
 }

@@ -106,7 +106,7 @@ impl Plan {
     }
 
     /// Whether `name` is that of a plan rather than of a scenario: an embedded plan, the
-    /// folder of a study, or a JSON file that has arms.
+    /// folder of a study, or a JSON file that has arms, or speaks of them where it is broken.
     #[must_use]
     pub fn is_plan(name: &str) -> bool {
         let Some(path) = file_of(name) else {
@@ -116,8 +116,10 @@ impl Plan {
             return true;
         }
         let text = read_text(&path, MAX_PLAN_BYTES).unwrap_or_default();
-        let json: Value = serde_json::from_str(&text).unwrap_or_default();
-        json.get("arms").is_some()
+        match serde_json::from_str::<Value>(&text) {
+            Ok(json) => json.get("arms").is_some(),
+            Err(_) => text.contains("\"arms\""),
+        }
     }
 
     /// Parses plan `text`; `file` names it in errors, scenario files are sought in `folder`.
