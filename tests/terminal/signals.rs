@@ -93,7 +93,11 @@ fn a_run_without_a_dashboard_survives_the_line_too() {
     let place = Place::new();
     let arguments = [place.run(ENDLESS), vec![String::from("--headless")]].concat();
     let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
-    let mut pty = Pty::start(120, 40, program(&arguments));
+    goes_on_without_a_line(Pty::start(120, 40, program(&arguments)), &place);
+}
+
+/// A run is told twice that its line is gone, goes on, and is ended by another signal.
+fn goes_on_without_a_line(mut pty: Pty, place: &Place) {
     place.wait_for_evolution();
     pty.signal("HUP");
     pty.signal("HUP");
@@ -112,14 +116,7 @@ fn who_was_started_to_survive_a_line_that_drops_does_whatever_is_wanted_otherwis
     command.arg(env!("CARGO_BIN_EXE_maxq-lab"));
     command.args(place.run(ENDLESS));
     command.args(["--headless", "--on-hangup", "stop"]);
-    let mut pty = Pty::start(120, 40, in_environment(command));
-    place.wait_for_evolution();
-    pty.signal("HUP");
-    pty.signal("HUP");
-    place.wait_for_evolution();
-    pty.signal("TERM");
-    wait_for_end(&mut pty, 143);
-    place.assert_saved();
+    goes_on_without_a_line(Pty::start(120, 40, in_environment(command)), &place);
 }
 
 #[test]
