@@ -6,11 +6,12 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use super::appearance::Appearance;
+use super::beginning::Beginning;
 use super::output::{self, Done};
 use crate::dashboard::keys::Key;
 use crate::dashboard::{App, Desk, FrameFormat, Input, Mode, Still, ViewId, render};
 use crate::lab::Recording;
-use crate::lab::specimen::{Archive, Start, bench};
+use crate::lab::specimen::{Archive, bench};
 
 /// Print one frame of the dashboard over a recorded run.
 ///
@@ -26,10 +27,8 @@ pub(super) struct Args {
     /// The run folder.
     folder: PathBuf,
 
-    /// The state in which the trials of rollouts begin: what is the case, and where the
-    /// agent is, such as 'from R to B at 0,3' or 'carrying at 500,1200 heading 90'.
-    #[arg(long, value_name = "STATE")]
-    start: Option<String>,
+    #[command(flatten)]
+    beginning: Beginning,
 
     /// Columns and rows.
     #[arg(long, value_name = "WxH", default_value = "120x40")]
@@ -99,10 +98,7 @@ pub(super) fn main(args: &Args) -> Done {
     let manifest = recording.manifest;
     let bench = bench(manifest.scenario, manifest.seed)?;
     let folder = args.folder.display().to_string();
-    let start = args.start.as_deref().map(|text| Start::read(text, bench));
-    let start = start
-        .transpose()
-        .map_err(|error| format!("--start: {error}"))?;
+    let start = args.beginning.read(bench)?;
     let app = App::new(Desk::new(bench, folder, Mode::Replay, look, key_map)).beginning_at(start);
     let mut still = Still::new(app, Archive::new(bench, &args.folder, None));
     let Size(columns, rows) = args.size;

@@ -5,6 +5,7 @@
 
 mod answer;
 mod appearance;
+mod beginning;
 mod check;
 mod evaluate;
 mod export;

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use super::beginning::Beginning;
 use super::output::{self, Done};
 use super::show::{Show, exit_code};
 use super::signals::Caught;
 use crate::dashboard::session::Source;
-use crate::lab::specimen::{Start, bench};
+use crate::lab::specimen::bench;
 use crate::lab::{Life, Recording};
 
 /// Look at a run that has ended, was stopped, or died.
@@ -23,10 +24,8 @@ pub(super) struct Args {
     /// The run folder.
     run_dir: PathBuf,
 
-    /// The state in which the trials of rollouts begin: what is the case, and where the
-    /// agent is, such as 'from R to B at 0,3' or 'carrying at 500,1200 heading 90'.
-    #[arg(long, value_name = "STATE")]
-    start: Option<String>,
+    #[command(flatten)]
+    beginning: Beginning,
 
     #[command(flatten)]
     show: Show,
@@ -40,10 +39,7 @@ pub(super) fn main(args: &Args) -> Done {
     let recording = Recording::read(&args.run_dir)?;
     let manifest = &recording.manifest;
     let what = bench(manifest.scenario.clone(), manifest.seed)?;
-    let start = args.start.as_deref().map(|text| Start::read(text, what));
-    let start = start
-        .transpose()
-        .map_err(|error| format!("--start: {error}"))?;
+    let start = args.beginning.read(what)?;
     let goes_on = recording.life == Life::Computing;
     let exit = outfit.beginning_at(start).show(
         what,
