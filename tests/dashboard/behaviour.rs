@@ -68,6 +68,22 @@ fn a_halted_rollout_in_a_finished_run_draws_nothing() {
 }
 
 #[test]
+fn a_rollout_that_is_halted_before_its_first_step_says_how_it_goes_on() {
+    let mut screen = screen();
+    screen.press("0");
+    for key in ["space", ".", ".", ",", "r"] {
+        screen.press(key);
+    }
+    let text = screen.text();
+    assert!(
+        text.contains("no time step of this rollout yet: . takes one"),
+        "{text}"
+    );
+    screen.press(".");
+    assert!(screen.text().contains("step 1 "), "{}", screen.text());
+}
+
+#[test]
 fn a_rollout_that_nobody_sees_does_not_go_on() {
     let mut screen = screen();
     screen.press("4");

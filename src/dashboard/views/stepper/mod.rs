@@ -15,7 +15,7 @@ use super::{View, nobody};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Look, Paint};
+use crate::dashboard::look::{Look, Paint, fitted, put};
 use crate::dashboard::scene::{Scene, draw_scene};
 use crate::hierarchy::{Tree, to_dot};
 use crate::lab::specimen::StepTrace;
@@ -64,6 +64,18 @@ impl Shown<'_> {
             Kind::Composite { .. } => &[],
         }
     }
+}
+
+/// Says how a rollout that is halted before its first time step goes on.
+fn no_step_yet(desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    let look = &desk.look;
+    let key = desk.keys.hint(Action::StepRollout, look.signs);
+    let text = match key {
+        Some((key, _)) => format!("no time step of this rollout yet: {key} takes one"),
+        None => String::from("no time step of this rollout yet"),
+    };
+    let text = fitted(&text, usize::from(area.width.saturating_sub(1)), look.signs);
+    put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
 }
 
 /// How much is said.
@@ -212,7 +224,10 @@ impl View for Stepper {
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
         let look = &desk.look;
         let Some(shown) = self.shown(desk) else {
-            return nobody(desk, area, buffer);
+            return match desk.stage.rollout() {
+                Some(_) => no_step_yet(desk, area, buffer),
+                None => nobody(desk, area, buffer),
+            };
         };
         let rows = shown.trace.after.readings.len() + 2;
         let areas = Areas::of(area, u16::try_from(rows).unwrap_or(u16::MAX));
