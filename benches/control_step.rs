@@ -13,8 +13,9 @@ use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_mai
 use maxq_lab::hierarchy::parse;
 use maxq_lab::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Trainee};
 use maxq_lab::random::{Purpose, stream};
-use maxq_lab::scenario::{Scenario, WorldModel};
+use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::World;
+use maxq_lab::worlds::WorldModel;
 use maxq_lab::worlds::foraging::ForagingWorld;
 
 const COMPLETE: &str = "(Root (Capture (FindBattery Avoid Wander) \

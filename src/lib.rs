@@ -10,8 +10,8 @@
 //!
 //! # The rooms of the house
 //!
-//! Imports point one way, from the top of this table to its bottom; [`random`] and
-//! [`files`] serve all.
+//! Imports point one way, from the top of this table to its bottom; [`random`],
+//! [`files`] and [`rules`] serve all.
 //!
 //! | room | what is in it |
 //! | --- | --- |
@@ -22,8 +22,8 @@
 //! | [`evolution`] | population, selection, crossover, the generation loop (Algorithm 3.1) |
 //! | [`learning`] | RBF features, action selection, primitive subtasks, MAXQ-Q |
 //! | [`hierarchy`] | trees of subtasks, typing rules, text form, structural difference |
-//! | [`worlds`] | where agents act, and the subtasks that they have there |
 //! | [`scenario`] | what an experiment is: the JSON model, its defaults, its rules |
+//! | [`worlds`] | where agents act, and the subtasks that they have there; a folder each |
 
 #![deny(missing_docs)]
 
@@ -36,5 +36,6 @@ pub mod lab;
 pub mod learning;
 pub mod random;
 pub mod report;
+pub mod rules;
 pub mod scenario;
 pub mod worlds;

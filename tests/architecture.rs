@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms, each with its rank: a room may name rooms of higher ranks, and its own.
-/// `files` and `random` are tools that every room may use.
+/// `files`, `random` and `rules` are tools that every room may use.
 const ROOMS: &[(&str, usize)] = &[
     ("cli", 0),
     ("dashboard", 1),
@@ -19,10 +19,11 @@ const ROOMS: &[(&str, usize)] = &[
     ("evolution", 3),
     ("learning", 4),
     ("hierarchy", 5),
-    ("worlds", 6),
-    ("scenario", 7),
+    ("scenario", 6),
+    ("worlds", 7),
     ("files", 8),
     ("random", 8),
+    ("rules", 8),
 ];
 
 /// Files that belong to no room: they say what the rooms are.
@@ -139,6 +140,53 @@ fn the_check_of_imports_sees_what_it_should() {
     // A list of rooms is not understood, so it is not allowed: it names the room "".
     assert_eq!(named("use crate::{cli, lab};"), [""]);
     assert_eq!(rank(""), None);
+}
+
+/// The worlds: the folders of `src/worlds`.
+fn worlds() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/worlds");
+    let entries = fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let folders = entries.filter(|entry| entry.path().is_dir());
+    folders
+        .map(|folder| folder.file_name().into_string().unwrap())
+        .collect()
+}
+
+/// Whether `code` names something of the world `four_rooms`: `four_rooms::START`, `FourRoomsWorld`.
+fn names(code: &str, world: &str) -> bool {
+    let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
+    let camel_case: String = world.split('_').map(capital).collect();
+    let mut words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
+    code.contains(&format!("{world}::")) || words.any(|word| word.starts_with(&camel_case))
+}
+
+#[test]
+fn a_world_is_known_in_its_own_folder_alone() {
+    let worlds = worlds();
+    assert!(worlds.len() >= 3, "the worlds were not found");
+    let mut wrong = Vec::new();
+    for source in sources() {
+        for (number, code) in source.code_without_tests() {
+            for world in worlds.iter().filter(|world| names(code, world)) {
+                if !source.path.starts_with(Path::new("worlds").join(world)) {
+                    wrong.push(format!("{}:{number}: {code}", source.path.display()));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_check_of_worlds_sees_what_it_should() {
+    assert!(names("use crate::worlds::taxi::Passenger;", "taxi"));
+    assert!(names("WorldModel::FourRooms(model) =>", "four_rooms"));
+    assert!(names(
+        "let world = FourRoomsWorld::new(model);",
+        "four_rooms"
+    ));
+    // The name of a scenario, in a message or an example.
+    assert!(!names("maxq-lab learn taxi-fickle", "taxi"));
 }
 
 #[test]

@@ -23,7 +23,8 @@ use maxq_lab::evolution::{
 };
 use maxq_lab::hierarchy::{Tree, parse};
 use maxq_lab::learning::{CompositeValues, Gate, Hierarchy, Skill, Skills};
-use maxq_lab::scenario::{Scenario, WorldModel};
+use maxq_lab::scenario::Scenario;
+use maxq_lab::worlds::WorldModel;
 use maxq_lab::worlds::foraging::ForagingWorld;
 use maxq_lab::worlds::{Catalogue, World};
 use rand::RngExt;

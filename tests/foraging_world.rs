@@ -19,7 +19,9 @@ mod readings;
 mod walks;
 
 use maxq_lab::random::Stream;
-use maxq_lab::scenario::{ForagingModel, Scenario, WorldModel};
+use maxq_lab::scenario::Scenario;
+use maxq_lab::worlds::WorldModel;
+use maxq_lab::worlds::foraging::ForagingModel;
 use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld};
 use maxq_lab::worlds::{SubtaskId, World};
 use rand::RngExt;

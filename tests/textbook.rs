@@ -23,8 +23,9 @@ use maxq_lab::evolution::{Experiment, Workers, read_tree};
 use maxq_lab::hierarchy::Tree;
 use maxq_lab::lab::{Algorithm, LearnProtocol, Learned, learn};
 use maxq_lab::learning::Gate;
-use maxq_lab::scenario::{Scenario, WorldModel};
+use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::World;
+use maxq_lab::worlds::WorldModel;
 use maxq_lab::worlds::cliff::CliffWorld;
 use maxq_lab::worlds::taxi::TaxiWorld;
 

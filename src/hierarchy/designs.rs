@@ -147,14 +147,13 @@ mod tests {
     use super::*;
     use crate::hierarchy::{canonical, parse};
     use crate::random::{Purpose, stream};
-    use crate::scenario::{Scenario, WorldModel};
-    use crate::worlds::World;
+    use crate::scenario::Scenario;
     use crate::worlds::foraging::ForagingWorld;
+    use crate::worlds::{World, WorldModel};
     use std::collections::HashSet;
 
     fn foraging() -> ForagingWorld {
         let scenario = Scenario::load("environment-1").unwrap();
-        #[allow(irrefutable_let_patterns)]
         let WorldModel::Foraging(model) = &scenario.world else {
             panic!("environment-1 is a foraging task");
         };

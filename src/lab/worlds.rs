@@ -3,11 +3,10 @@
 use thiserror::Error;
 
 use crate::evolution::{Experiment, ExperimentError};
-use crate::scenario::{Scenario, WorldModel};
-use crate::worlds::cliff::{CliffError, CliffWorld};
-use crate::worlds::foraging::{ForagingError, ForagingWorld};
+use crate::rules::Problem;
+use crate::scenario::Scenario;
+use crate::worlds::Visitor;
 use crate::worlds::scene::Scenic;
-use crate::worlds::taxi::{TaxiError, TaxiWorld};
 
 /// Something to be done with the experiment of a scenario, whatever its world.
 pub trait WorldTask {
@@ -21,15 +20,9 @@ pub trait WorldTask {
 /// Why a scenario cannot be made ready.
 #[derive(Debug, Error)]
 pub enum SetupError {
-    /// Its foraging world cannot be built.
-    #[error(transparent)]
-    Foraging(#[from] ForagingError),
-    /// Its taxi world cannot be built.
-    #[error(transparent)]
-    Taxi(#[from] TaxiError),
-    /// Its cliff world cannot be built.
-    #[error(transparent)]
-    Cliff(#[from] CliffError),
+    /// Its world cannot be built.
+    #[error("{0}")]
+    World(Problem),
     /// Its first hierarchies cannot be used.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
@@ -40,18 +33,23 @@ pub enum SetupError {
 /// # Errors
 /// When the scenario's world or its hierarchies cannot be built.
 pub fn with_world<T: WorldTask>(scenario: Scenario, task: T) -> Result<T::Output, SetupError> {
-    match &scenario.world {
-        WorldModel::Foraging(model) => {
-            let world = ForagingWorld::new(model)?;
-            Ok(task.carry_out(Experiment::new(scenario, world)?))
-        }
-        WorldModel::Taxi(model) => {
-            let world = TaxiWorld::new(model)?;
-            Ok(task.carry_out(Experiment::new(scenario, world)?))
-        }
-        WorldModel::Cliff(model) => {
-            let world = CliffWorld::new(model)?;
-            Ok(task.carry_out(Experiment::new(scenario, world)?))
-        }
+    let settings = scenario.world.clone();
+    settings
+        .visit(Setup { scenario, task })
+        .map_err(|problem| SetupError::World(problem.within("world")))?
+}
+
+/// Makes an experiment of the world that it visits.
+struct Setup<T> {
+    scenario: Scenario,
+    task: T,
+}
+
+impl<T: WorldTask> Visitor for Setup<T> {
+    type Output = Result<T::Output, SetupError>;
+
+    fn visit<W: Scenic + 'static>(self, world: W) -> Self::Output {
+        let experiment = Experiment::new(self.scenario, world)?;
+        Ok(self.task.carry_out(experiment))
     }
 }

@@ -157,9 +157,9 @@ impl Features {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{RbfWidth, Scenario, WorldModel};
-    use crate::worlds::foraging::{ForagingWorld, INPUTS};
-    use crate::worlds::{Axis, World};
+    use crate::scenario::Scenario;
+    use crate::worlds::foraging::{ForagingWorld, INPUTS, RbfWidth};
+    use crate::worlds::{Axis, World, WorldModel};
     use proptest::prelude::*;
 
     fn world(width: RbfWidth, proximity_centres: usize) -> ForagingWorld {

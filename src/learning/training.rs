@@ -8,7 +8,8 @@ use super::linear::Row;
 use super::selection::{Softmax, uniform};
 use super::skills::Skill;
 use crate::random::Stream;
-use crate::scenario::{Exploration, LearningModel, TrainingModel};
+use crate::scenario::LearningModel;
+use crate::worlds::{Exploration, TrainingModel};
 use crate::worlds::{SubtaskId, World};
 
 /// One primitive subtask in training, alone, by Thesis Eq. 3.6: the value of an action is

@@ -31,7 +31,7 @@ impl Winner {
         let [first, second, third, fourth] = self.selectable.as_slice() else {
             return None;
         };
-        let foraging = self.primitives.iter().any(|name| name == "ApproachBattery");
+        let captures = self.primitives.iter().any(|name| name == "ApproachBattery");
         let composites = |side: [&str; 3]| {
             self.composites
                 .iter()
@@ -39,7 +39,7 @@ impl Winner {
                 .count()
         };
         let [capture, deliver] = SIDES.map(composites);
-        foraging.then(|| {
+        captures.then(|| {
             [
                 capture + first.len() + second.len(),
                 deliver + third.len() + fourth.len(),

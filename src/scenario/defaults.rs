@@ -1,4 +1,4 @@
-//! Every default of a scenario as a named constant with its source.
+//! Every default of learning and evolution as a named constant with its source.
 //!
 //! Where the thesis is silent or says a thing twice, the constant says who decided.
 
@@ -12,9 +12,6 @@ pub const INITIAL_TEMPERATURE: f64 = 2.0;
 pub const TEMPERATURE_LIMIT: f64 = 0.05;
 /// Temperature decrease factor of every subtask but Avoid and Wander, Thesis 4.4.
 pub const TEMPERATURE_DECREASE: f64 = 0.995;
-/// Temperature decrease factor of Avoid and Wander, Thesis 4.4. It acts only when
-/// they are trained with `softmax` exploration.
-pub const TEMPERATURE_DECREASE_SLOW: f64 = 0.9995;
 /// Largest probability (rho limit) above which softmax gives way to
 /// epsilon-greedy selection, Thesis Table 4.5.
 pub const PROBABILITY_LIMIT: f64 = 0.98;
@@ -25,8 +22,6 @@ pub const EPSILON: f64 = 0.02;
 pub const INITIAL_PARAMETER: f64 = 0.123;
 /// Minus the pseudo-reward of a transition into a terminal state that is no goal, Thesis 4.2.
 pub const PSEUDO_PENALTY: f64 = 1.0;
-/// Length of a time step in seconds, Thesis Table 4.5.
-pub const TIME_STEP_S: f64 = 0.1;
 
 /// Population size, Thesis Table 4.7.
 pub const POPULATION_SIZE: usize = 16;
@@ -46,120 +41,3 @@ pub const GENERATION_LIMIT: u64 = 200;
 pub const TRIAL_STEP_LIMIT: u32 = 2000;
 /// States sampled per state type for the selection probabilities, Thesis 4.5.4.
 pub const POLICY_SAMPLES: usize = 1000;
-
-/// Side of the square arena in millimetres, Thesis 4.3 (3 by 3 m).
-pub const ARENA_SIDE_MM: f64 = 3000.0;
-/// Radius of the robot's body in millimetres; the thesis does not print it.
-pub const ROBOT_RADIUS_MM: f64 = 75.0;
-/// Distance between the wheels in millimetres; the thesis does not print it.
-pub const WHEEL_BASE_MM: f64 = 150.0;
-/// A visible battery whose centre is this near to the robot's centre is captured.
-pub const CAPTURE_DISTANCE_MM: f64 = 160.0;
-/// A visible nest whose centre is this near to a carrying robot's centre is reached.
-pub const DELIVERY_DISTANCE_MM: f64 = 200.0;
-/// Directions of the proximity sensors, left to right, Thesis 4.1.
-pub const PROXIMITY_ANGLES_DEG: [f64; 5] = [90.0, 30.0, 0.0, -30.0, -90.0];
-/// Effective range of the proximity sensors in millimetres, Thesis 4.1.
-pub const PROXIMITY_RANGE_MM: [f64; 2] = [70.0, 350.0];
-/// Half the angle of the field of view in degrees, Thesis 4.1.
-pub const VISION_HALF_ANGLE_DEG: f64 = 60.0;
-/// Maximum visible distance in millimetres, Thesis 4.1.
-pub const VISION_RANGE_MM: f64 = 3500.0;
-/// Relative noise of every reading, Thesis 4.1: a reading is multiplied by 1 + u,
-/// u uniform between minus and plus this value.
-pub const SENSOR_NOISE: f64 = 0.1;
-
-/// Actions of Avoid, (right, left) wheel speeds in mm/s, Thesis Table 4.4.
-pub const AVOID_ACTIONS: [[f64; 2]; 5] = [
-    [250.0, 150.0],
-    [150.0, 250.0],
-    [300.0, -300.0],
-    [-300.0, 300.0],
-    [-200.0, -200.0],
-];
-/// Actions of Wander, (right, left) wheel speeds in mm/s, Thesis Table 4.4.
-pub const WANDER_ACTIONS: [[f64; 2]; 5] = [
-    [600.0, 600.0],
-    [600.0, 400.0],
-    [400.0, 600.0],
-    [600.0, 100.0],
-    [100.0, 600.0],
-];
-/// Actions of Approach battery and Approach nest, (right, left) wheel speeds in
-/// mm/s, Thesis Table 4.4.
-pub const APPROACH_ACTIONS: [[f64; 2]; 5] = [
-    [450.0, 450.0],
-    [675.0, 225.0],
-    [225.0, 675.0],
-    [900.0, 0.0],
-    [0.0, 900.0],
-];
-/// Actions of Turn, (right, left) wheel speeds in mm/s, Thesis Table 4.4.
-pub const TURN_ACTIONS: [[f64; 2]; 4] = [
-    [-100.0, 100.0],
-    [100.0, -100.0],
-    [-200.0, 200.0],
-    [200.0, -200.0],
-];
-/// Rewards of Avoid's actions, Thesis Eq. 4.1.
-pub const AVOID_REWARDS: [f64; 5] = [-0.5, -0.5, -0.75, -0.75, -0.875];
-/// Rewards of Wander's actions, Thesis Eq. 4.1.
-pub const WANDER_REWARDS: [f64; 5] = [-0.25, -0.45, -0.45, -0.67, -0.67];
-/// Reward of a failing primitive subtask - a wall at the smallest proximity
-/// reading, or the target out of sight -, Thesis Eq. 4.1.
-pub const FAILURE_REWARD: f64 = -1.0;
-/// Approach: the reward is minus the target's angle over this, Thesis Eq. 4.1.
-pub const APPROACH_REWARD_DIVISOR_DEG: f64 = 60.0;
-/// Turn: the reward at angle zero, Thesis Eq. 4.1.
-pub const TURN_REWARD_OFFSET: f64 = -0.25;
-/// Turn: the target's angle is divided by this, Thesis Eq. 4.1.
-pub const TURN_REWARD_DIVISOR_DEG: f64 = 80.0;
-
-/// RBF centres per proximity sensor; 2^5 = 32 features, Thesis Table 4.6.
-pub const PROXIMITY_CENTRES: usize = 2;
-/// RBF centres over the angle in Visible battery and Visible nest; with those over
-/// the distance 32 x 5 x 2 = 320 features, Thesis Table 4.6.
-pub const ANGLE_CENTRES: usize = 5;
-/// RBF centres over the distance in Visible battery and Visible nest.
-pub const DISTANCE_CENTRES: usize = 2;
-/// RBF centres of Approach battery and Approach nest, Thesis Table 4.6.
-pub const APPROACH_CENTRES: usize = 11;
-/// RBF centres of Turn, Thesis Table 4.6.
-pub const TURN_CENTRES: usize = 7;
-
-/// Training steps of each primitive subtask. The thesis says only that they are
-/// trained; at this number the greedy actions have the shape of its Figure 4.3.
-pub const TRAINING_STEPS: u32 = 100_000;
-/// Steps of a training episode of Avoid and Wander. Episodes of five steps hardly
-/// ever press against a wall, and Wander then pushes into corners for ever.
-pub const EXPLORING_EPISODE_STEPS: u32 = 100;
-/// Steps of a training episode of Approach and Turn, whose targets are soon lost.
-pub const TARGET_EPISODE_STEPS: u32 = 5;
-
-/// The taxi's city, Thesis Figure 2.6 (Dietterich 2000, Figure 1).
-pub const TAXI_MAP: [&str; 5] = [
-    "R: | : :G",
-    " : | : : ",
-    " : : : : ",
-    " | : | : ",
-    "Y| : |B: ",
-];
-/// Reward of every action of the taxi, Thesis 2.2.2.
-pub const TAXI_STEP_REWARD: f64 = -1.0;
-/// Added where the passenger is put down at his destination, Thesis 2.2.2: that action
-/// brings 19, and the values printed there come out.
-pub const TAXI_DELIVERY_REWARD: f64 = 20.0;
-/// Added where a pickup or putdown is illegal, Thesis 2.2.2: that action brings -11.
-pub const TAXI_ILLEGAL_REWARD: f64 = -10.0;
-
-/// Columns of the cliff walk, Thesis Figure 2.3.
-pub const CLIFF_WIDTH: usize = 12;
-/// Rows of the cliff walk, Thesis Figure 2.3.
-pub const CLIFF_HEIGHT: usize = 4;
-/// Reward of a step that does not lead into the cliff, Thesis 2.1.3.
-pub const CLIFF_STEP_REWARD: f64 = -1.0;
-/// Reward of a step into the cliff, Thesis 2.1.3.
-pub const CLIFF_FALL_REWARD: f64 = -100.0;
-/// Sigma of the cliff walk's Gaussians over their spacing: that of Thesis Figure 2.4,
-/// sigma 10 at a spacing of 30. Wide Gaussians cannot follow the edge of the cliff.
-pub const CLIFF_RBF_WIDTH_CELLS: f64 = 1.0 / 3.0;

@@ -9,29 +9,12 @@ pub struct Embedded {
     pub json: &'static str,
 }
 
-macro_rules! embedded {
-    ($folder:literal: $($name:literal),+ $(,)?) => {
-        &[$(Embedded {
-            name: $name,
-            json: include_str!(concat!("../../scenarios/", $folder, $name, ".json")),
-        }),+]
-    };
-}
+/// All embedded scenarios: the files of `scenarios/`, found by `src/build.rs`.
+pub const EMBEDDED: &[Embedded] = include!(concat!(env!("OUT_DIR"), "/scenarios.rs"));
 
-/// All embedded scenarios.
-pub const EMBEDDED: &[Embedded] = embedded![
-    "":
-    "environment-1",
-    "environment-2",
-    "environment-3",
-    "taxi",
-    "taxi-fickle",
-    "cliff",
-    "smoke",
-];
-
-/// All embedded plans of studies; the names of their scenarios are those of embedded ones.
-pub const EMBEDDED_PLANS: &[Embedded] = embedded!["studies/": "thesis", "evolving-taxi"];
+/// All embedded plans of studies, the files of `scenarios/studies/`; the names of their
+/// scenarios are those of embedded ones.
+pub const EMBEDDED_PLANS: &[Embedded] = include!(concat!(env!("OUT_DIR"), "/plans.rs"));
 
 /// The names of the embedded scenarios, for messages.
 pub(super) fn names() -> String {

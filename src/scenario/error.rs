@@ -1,32 +1,9 @@
 //! Errors of scenario files: which file, where in it, what was found, what is allowed.
 
-use std::fmt;
-
 use thiserror::Error;
 
 use crate::files::ReadError;
-
-/// A rule that a scenario breaks.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
-    /// Where, as a dotted path: `world.foraging.arena.walls_mm[3]`.
-    pub place: String,
-    /// The value found there.
-    pub found: String,
-    /// The values allowed there.
-    pub allowed: String,
-}
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            place,
-            found,
-            allowed,
-        } = self;
-        write!(f, "{place}: found {found}; allowed: {allowed}")
-    }
-}
+use crate::rules::Problem;
 
 /// Why a scenario cannot be used.
 #[derive(Debug, Error)]

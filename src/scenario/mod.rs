@@ -10,28 +10,22 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-mod cliff;
+use crate::rules::Problem;
+use crate::worlds::WorldModel;
+
 pub mod defaults;
 mod embedded;
 mod error;
-mod foraging;
 mod overrides;
+mod rules;
 mod settings;
-mod taxi;
-mod validate;
 
-pub use cliff::{CliffBegin, CliffModel};
 pub use embedded::{EMBEDDED, EMBEDDED_PLANS, Embedded};
-pub use error::{Problem, ScenarioError};
-pub use foraging::{
-    ArenaModel, Exploration, FeatureModel, FenceModel, ForagingModel, MovementModel,
-    PrimitiveModels, RbfWidth, RobotModel, SensorModel, TargetModel, TrainingModel, TrainingModels,
-};
+pub use error::ScenarioError;
 pub use settings::{
     CompletionBootstrap, CompositeChoice, CoolOn, EvolutionModel, Inheritance, LearningModel,
     PrimitiveLearning, PseudoReward, Selection, Variation,
 };
-pub use taxi::TaxiModel;
 
 /// The version of the scenario format that this program reads.
 pub const FORMAT: u32 = 1;
@@ -58,18 +52,6 @@ pub struct Scenario {
     pub learning: LearningModel,
     /// How hierarchies evolve.
     pub evolution: EvolutionModel,
-}
-
-/// The world of a scenario.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum WorldModel {
-    /// The foraging task of thesis chapter 4.
-    Foraging(Box<ForagingModel>),
-    /// The taxi problem of thesis chapter 2.
-    Taxi(TaxiModel),
-    /// The cliff walk of thesis chapter 2.
-    Cliff(CliffModel),
 }
 
 impl Scenario {
@@ -116,11 +98,7 @@ impl Scenario {
         if let Some(format) = crate::files::stated_format(text).filter(|&format| format != FORMAT) {
             return Err(ScenarioError::Invalid {
                 file: file.to_owned(),
-                problems: vec![Problem {
-                    place: String::from("format"),
-                    found: format.to_string(),
-                    allowed: FORMAT.to_string(),
-                }],
+                problems: vec![Problem::new("format", format, FORMAT)],
             });
         }
         let mut json = serde_json::Deserializer::from_str(text);
@@ -153,7 +131,7 @@ impl Scenario {
     /// # Errors
     /// With all rules that are broken.
     pub fn checked(self, file: &str) -> Result<Self, ScenarioError> {
-        let problems = validate::problems(&self);
+        let problems = rules::problems(&self);
         if problems.is_empty() {
             Ok(self)
         } else {

@@ -6,22 +6,28 @@
 //! generic over the world and compiled for each one, so the interface costs nothing at
 //! run time.
 
+#[macro_use]
+mod settings;
 mod catalogue;
-pub mod cliff;
 pub mod finite;
-pub mod foraging;
 mod grid;
 pub mod scene;
-pub mod taxi;
+mod training;
 
 pub use catalogue::{
     Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,
     StateTypes, Subtask, SubtaskId,
 };
+pub use settings::{Settings, Visitor};
+pub use training::{Exploration, TrainingModel};
 
 use self::finite::FiniteModel;
 use crate::random::Stream;
-use crate::scenario::TrainingModel;
+use crate::rules::{Check, Problem};
+
+// Every folder here is a world. `src/build.rs` finds them, so that a new one needs no
+// change elsewhere: it declares their modules, and calls `worlds!` with all of them.
+include!(concat!(env!("OUT_DIR"), "/worlds.rs"));
 
 /// A typical input of a primitive subtask, for looking at what it has learned.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,8 @@ use maxq_lab::evolution::{Evolution, Experiment, GenerationRecord, Origin, Worke
 use maxq_lab::hierarchy::{parse, structural_difference};
 use maxq_lab::learning::Gate;
 use maxq_lab::random::Stream;
-use maxq_lab::scenario::{Scenario, Selection, TrainingModel};
+use maxq_lab::scenario::{Scenario, Selection};
+use maxq_lab::worlds::TrainingModel;
 use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld, INPUTS, Pose};
 use maxq_lab::worlds::{Catalogue, Probe, StateType, SubtaskId, World};
 

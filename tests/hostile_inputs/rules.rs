@@ -1,6 +1,6 @@
 //! Every rule of a scenario: a setting that breaks it, and the place that is named.
 
-use maxq_lab::scenario::ScenarioError;
+use maxq_lab::scenario::{Scenario, ScenarioError};
 
 use super::common::{program, short, smoke};
 use super::{assert_says, refused};
@@ -238,9 +238,26 @@ const FENCES: &[(&str, &str)] = &[
     ),
 ];
 
+/// A scenario of another world, a setting of it, and the place of the rule that it breaks.
+const OTHER_WORLDS: &[(&str, &str, &str)] = &[
+    ("taxi", "slip=1.1", "slip"),
+    ("taxi", "change_of_mind=-0.1", "change_of_mind"),
+    ("taxi", "step_reward=1001", "step_reward"),
+    ("taxi", "delivery_reward=-1001", "delivery_reward"),
+    ("taxi", "illegal_reward=1e9", "illegal_reward"),
+    ("taxi", "map=[]", "map"),
+    ("taxi", r#"map=["R:G", "R"]"#, "map[1]"),
+    ("taxi", r#"map=["R;G"]"#, "map[0], character 1"),
+    ("cliff", "width=2", "width"),
+    ("cliff", "height=65", "height"),
+    ("cliff", "step_reward=1001", "step_reward"),
+    ("cliff", "fall_reward=-1001", "fall_reward"),
+    ("cliff", "rbf_width_cells=0", "rbf_width_cells"),
+];
+
 /// The places of the problems that a setting leads to.
-fn places(setting: &str) -> Vec<String> {
-    match smoke(&[]).with_settings(&[setting.to_owned()]) {
+fn places(scenario: &Scenario, setting: &str) -> Vec<String> {
+    match scenario.clone().with_settings(&[setting.to_owned()]) {
         Err(ScenarioError::Invalid { problems, .. }) => {
             let complete = |text: &str| assert!(!text.is_empty(), "{setting}: {problems:?}");
             for problem in &problems {
@@ -256,17 +273,33 @@ fn places(setting: &str) -> Vec<String> {
 #[test]
 fn every_rule_names_the_place_where_it_is_broken() {
     for (setting, place) in RULES {
-        let places = places(setting);
+        let places = places(&smoke(&[]), setting);
         assert!(
             places.iter().any(|named| named == place),
             "{setting}: {places:?}"
         );
     }
     for (fence, place) in FENCES {
-        let places = places(&format!("world.foraging.arena.fences=[{{{fence}}}]"));
+        let places = places(
+            &smoke(&[]),
+            &format!("world.foraging.arena.fences=[{{{fence}}}]"),
+        );
         let place = format!("world.foraging.arena.fences[0].{place}");
         assert!(places.contains(&place), "{fence}: {places:?}");
     }
+    for (world, setting, place) in OTHER_WORLDS {
+        let scenario = Scenario::load(world).unwrap();
+        let places = places(&scenario, &format!("world.{world}.{setting}"));
+        let place = format!("world.{world}.{place}");
+        assert_eq!(places, [place], "{setting}");
+    }
+}
+
+#[test]
+fn all_rules_that_are_broken_are_named_at_once() {
+    let taxi = Scenario::load("taxi").unwrap();
+    let world = r#"world.taxi={"map":["R|G"],"slip":2}"#;
+    assert_eq!(places(&taxi, world), ["world.taxi.map", "world.taxi.slip"]);
 }
 
 #[test]
@@ -311,7 +344,9 @@ fn lists_have_limits() {
         ),
     ] {
         assert!(
-            places(&setting).iter().any(|named| named == place),
+            places(&smoke(&[]), &setting)
+                .iter()
+                .any(|named| named == place),
             "{place}"
         );
     }

@@ -3,7 +3,9 @@
 use maxq_lab::evolution::{Experiment, Workers};
 use maxq_lab::hierarchy::parse;
 use maxq_lab::learning::{Agent, Gate, Hierarchy, Skills};
-use maxq_lab::scenario::{ForagingModel, Scenario, WorldModel};
+use maxq_lab::scenario::Scenario;
+use maxq_lab::worlds::WorldModel;
+use maxq_lab::worlds::foraging::ForagingModel;
 use maxq_lab::worlds::foraging::ForagingWorld;
 
 use super::Recorder;

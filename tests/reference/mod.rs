@@ -16,9 +16,10 @@ pub use subtasks::{DELIVERED, Row, row};
 use maxq_lab::hierarchy::Tree;
 use maxq_lab::learning::{Hierarchy, Skills, Update};
 use maxq_lab::scenario::{
-    CompletionBootstrap, CoolOn, FeatureModel, LearningModel, PrimitiveLearning, PseudoReward,
+    CompletionBootstrap, CoolOn, LearningModel, PrimitiveLearning, PseudoReward,
 };
 use maxq_lab::worlds::Catalogue;
+use maxq_lab::worlds::foraging::FeatureModel;
 use subtasks::{Input, phi};
 
 /// Two children whose values differ by less than this can be swapped by the rounding

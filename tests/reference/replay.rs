@@ -1,8 +1,8 @@
 //! What an agent did in a trial, recorded through the library's `Observer`.
 
 use maxq_lab::learning::{Observer, Update};
-use maxq_lab::scenario::FeatureModel;
 use maxq_lab::worlds::World;
+use maxq_lab::worlds::foraging::FeatureModel;
 use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld};
 
 use super::State;

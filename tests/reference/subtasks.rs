@@ -1,6 +1,6 @@
 //! Thesis Tables 4.1 to 4.3 and 4.6 and Eq. 2.22, written down once more.
 
-use maxq_lab::scenario::{FeatureModel, RbfWidth};
+use maxq_lab::worlds::foraging::{FeatureModel, RbfWidth};
 
 /// The terminal state type, after the four of Table 4.1 numbered from 1.
 pub const DELIVERED: usize = 5;

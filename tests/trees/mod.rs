@@ -5,7 +5,8 @@
 use std::collections::BTreeSet;
 
 use maxq_lab::hierarchy::Tree;
-use maxq_lab::scenario::{Scenario, WorldModel};
+use maxq_lab::scenario::Scenario;
+use maxq_lab::worlds::WorldModel;
 use maxq_lab::worlds::foraging::ForagingWorld;
 use maxq_lab::worlds::{Catalogue, SubtaskId};
 use rand::rngs::SmallRng;

@@ -1,6 +1,6 @@
 //! The subtasks of the cliff walk.
 
-use crate::scenario::CliffModel;
+use super::CliffModel;
 use crate::worlds::grid::Cells;
 use crate::worlds::{
     Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,

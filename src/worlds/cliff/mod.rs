@@ -5,7 +5,7 @@
 //!
 //! - **Actions.** Up, Down, Right, Left move by one cell; at the edge the agent stays.
 //! - **Start.** The start, or any cell but the goal: see
-//!   [`CliffBegin`](crate::scenario::CliffBegin).
+//!   [`CliffBegin`].
 //! - **Rewards.** -1 for every step. A step into the cliff brings -100 and leads to the
 //!   start; the trial goes on.
 //! - **End.** The goal is reached.
@@ -19,31 +19,18 @@
 
 mod catalogue;
 mod exact;
+mod model;
 mod scene;
 
 use rand::RngExt;
-use thiserror::Error;
 
 use self::catalogue::{ABOVE, AT_GOAL, AT_START, DOWN, INPUTS, LAST, LEFT, RIGHT};
+pub use self::model::{CliffBegin, CliffModel};
 use super::finite::FiniteModel;
 use super::grid::Cells;
 use super::{Catalogue, StateType, SubtaskId, World};
 use crate::random::Stream;
-use crate::scenario::{CliffBegin, CliffModel};
-
-/// Why the world cannot be built: never, for a scenario that obeys its rules.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum CliffError {
-    /// The grid leaves no room for a cliff.
-    #[error("world.cliff: found {columns} by {rows} cells; allowed: at least 3 by 2")]
-    TooSmall {
-        /// Columns found.
-        columns: usize,
-        /// Rows found.
-        rows: usize,
-    },
-}
-
+use crate::rules::Problem;
 /// What the agent perceives: the number of its cell, and where this is in [0, 1] from the
 /// lower left.
 pub type Percept = [f32; INPUTS];
@@ -58,20 +45,18 @@ pub struct CliffWorld {
 }
 
 impl CliffWorld {
-    /// The world that a scenario describes.
+    /// The world of settings that obey the rules.
     ///
     /// # Errors
-    /// When the grid is too small.
-    pub fn new(model: &CliffModel) -> Result<Self, CliffError> {
+    /// When the grid is too small to have a cliff.
+    pub fn new(model: &CliffModel) -> Result<Self, Problem> {
         let cells = Cells {
             columns: model.width,
             rows: model.height,
         };
         if cells.columns < 3 || cells.rows < 2 {
-            return Err(CliffError::TooSmall {
-                columns: cells.columns,
-                rows: cells.rows,
-            });
+            let found = format!("{} by {} cells", cells.columns, cells.rows);
+            return Err(Problem::new("", found, "at least 3 by 2"));
         }
         Ok(Self {
             catalogue: catalogue::catalogue(cells, model),

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use nalgebra::{Point2, Vector2};
 
-use crate::scenario::ArenaModel;
+use super::ArenaModel;
 
 /// Cells along the longer side. More cells give shorter lists and a longer start.
 const CELLS: usize = 50;
@@ -239,18 +239,15 @@ impl Arena {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Scenario, WorldModel};
+    use crate::worlds::foraging::model::tests::environment;
     use proptest::prelude::*;
 
     fn arena() -> Arena {
-        let WorldModel::Foraging(model) = Scenario::load("environment-3").unwrap().world else {
-            panic!("a foraging scenario")
-        };
         let reach = Reach {
             touch: 135.0,
             proximity: 464.0,
         };
-        Arena::new(&model.arena, reach)
+        Arena::new(&environment(3).arena, reach)
     }
 
     #[test]

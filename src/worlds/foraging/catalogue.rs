@@ -1,6 +1,6 @@
 //! The subtasks of the foraging task (Thesis Tables 4.1 to 4.3 and 4.6).
 
-use crate::scenario::{FeatureModel, ForagingModel, RbfWidth};
+use super::{FeatureModel, ForagingModel, RbfWidth};
 use crate::worlds::{
     Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Kind, MapId, StateType, StateTypeInfo,
     StateTypes, Subtask, SubtaskId,
@@ -219,14 +219,11 @@ fn sigma(width: RbfWidth, centres: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Scenario, WorldModel};
+    use crate::worlds::foraging::model::tests::environment;
 
     #[test]
     fn numbers_of_features_are_those_of_table_4_6() {
-        let WorldModel::Foraging(model) = Scenario::load("environment-1").unwrap().world else {
-            panic!("a foraging scenario")
-        };
-        let catalogue = catalogue(&model);
+        let catalogue = catalogue(&environment(1));
         let width = |name| catalogue.width(catalogue.find(name).unwrap());
         assert_eq!(width("Root"), 128);
         assert_eq!((width("Capture"), width("Deliver")), (64, 64));

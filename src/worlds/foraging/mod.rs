@@ -32,13 +32,15 @@
 
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
-use thiserror::Error;
 
 mod arena;
 mod catalogue;
+pub mod defaults;
+mod model;
 mod motion;
 mod probes;
 mod rays;
+mod rules;
 mod scene;
 mod sensors;
 
@@ -47,33 +49,23 @@ pub use catalogue::{
     ANGLE, APPROACH_BATTERY, APPROACH_NEST, AVOID, BATTERY_VISIBLE, CARRYING, DELIVERED, DISTANCE,
     INPUTS, NEST_VISIBLE, PROXIMITY_SENSORS, SEARCHING, TURN, WANDER,
 };
+pub use model::{
+    ArenaModel, FeatureModel, FenceModel, ForagingModel, MovementModel, PrimitiveModels, RbfWidth,
+    RobotModel, SensorModel, TargetModel, TrainingModels,
+};
 pub use sensors::TargetReading;
 
 use arena::Reach;
 use motion::{Arc, slide};
 use sensors::{Sensors, Sighting};
 
-use super::{Catalogue, Probe, StateType, SubtaskId, World};
+use super::{Catalogue, Probe, StateType, SubtaskId, TrainingModel, World};
 use crate::random::{Purpose, Stream, stream};
-use crate::scenario::{ForagingModel, MovementModel, TargetModel, TrainingModel};
+use crate::rules::Problem;
 
 /// Draws after which a search for a pose gives up. In a usable arena a search takes
 /// a handful of draws.
 const MAX_DRAWS: usize = 20_000;
-
-/// Why a foraging world cannot be built.
-#[derive(Debug, Error)]
-pub enum ForagingError {
-    /// Nowhere is room for the robot.
-    #[error(
-        "world.foraging.arena: found no free place for a robot of radius {radius_mm} mm in \
-         {MAX_DRAWS} draws; allowed: an arena with room to start in"
-    )]
-    NoRoom {
-        /// The robot's radius.
-        radius_mm: f64,
-    },
-}
 
 /// Where the robot is and where it heads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,11 +138,11 @@ pub struct ForagingWorld {
 }
 
 impl ForagingWorld {
-    /// Builds the world of a valid model.
+    /// The world of settings that obey the rules.
     ///
     /// # Errors
     /// When the arena has no room for the robot.
-    pub fn new(model: &ForagingModel) -> Result<Self, ForagingError> {
+    pub fn new(model: &ForagingModel) -> Result<Self, Problem> {
         let primitives = primitives(model);
         let longest = primitives
             .iter()
@@ -176,9 +168,11 @@ impl ForagingWorld {
             },
         };
         let mut rng = stream(0, 0, 0, Purpose::StartPoses);
-        world.some_pose = world
-            .find_pose(&mut rng)
-            .ok_or(ForagingError::NoRoom { radius_mm: radius })?;
+        world.some_pose = world.find_pose(&mut rng).ok_or_else(|| {
+            let found =
+                format!("no free place for a robot of radius {radius} mm in {MAX_DRAWS} draws");
+            Problem::new("arena", found, "an arena with room to start in")
+        })?;
         Ok(world)
     }
 

@@ -257,14 +257,11 @@ fn scale(name: &str, values: &[f32]) -> Scale {
 mod tests {
     use super::*;
     use crate::random::{Purpose, stream};
-    use crate::scenario::{Scenario, WorldModel};
+    use crate::worlds::foraging::model::tests::environment;
     use crate::worlds::foraging::{AVOID, CARRYING, SEARCHING};
 
     fn world() -> ForagingWorld {
-        let WorldModel::Foraging(model) = Scenario::load("environment-3").unwrap().world else {
-            panic!("a foraging scenario")
-        };
-        ForagingWorld::new(&model).unwrap()
+        ForagingWorld::new(&environment(3)).unwrap()
     }
 
     #[test]

@@ -3,12 +3,12 @@
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 
+use super::SensorModel;
 use super::arena::Arena;
 use super::catalogue::PROXIMITY_SENSORS;
 use super::motion::rotate;
 use super::rays::Rays;
 use crate::random::Stream;
-use crate::scenario::SensorModel;
 
 /// A reading of the vision system.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! The subtasks of the taxi problem (Thesis Figures 2.7 and 3.1) and what their value
 //! functions look at (Dietterich 2000, section 5).
 
+use super::TaxiModel;
 use super::city::City;
-use crate::scenario::TaxiModel;
 use crate::worlds::{
     Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,
     StateTypes, Subtask, SubtaskId,

@@ -1,59 +1,11 @@
 //! The taxi's city: cells, walls, stands.
 
-use thiserror::Error;
+use crate::rules::Problem;
 
 /// Longest side of a city in cells: bounds what a hostile file can make the program compute.
 const MAX_SIDE: usize = 20;
 /// Largest number of stands.
 const MAX_STANDS: usize = 8;
-
-/// Why a map is not that of a city.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum CityError {
-    /// The number of rows is wrong.
-    #[error("world.taxi.map: found {found} rows; allowed: 1 to {MAX_SIDE}")]
-    Rows {
-        /// The number found.
-        found: usize,
-    },
-    /// A row has another length than the first, or a length that no row can have.
-    #[error(
-        "world.taxi.map[{row}]: found {found} characters; allowed: {allowed}, a cell, then \
-         ':' or '|' and a cell any number of times, in every row alike"
-    )]
-    Length {
-        /// The row, from 0.
-        row: usize,
-        /// Its length in characters.
-        found: usize,
-        /// The length allowed.
-        allowed: String,
-    },
-    /// A character is not allowed where it stands.
-    #[error("world.taxi.map[{row}], character {column}: found {found:?}; allowed: {allowed}")]
-    Character {
-        /// The row, from 0.
-        row: usize,
-        /// The place in the row, from 0.
-        column: usize,
-        /// The character found.
-        found: char,
-        /// The characters allowed.
-        allowed: &'static str,
-    },
-    /// The number of stands is wrong.
-    #[error("world.taxi.map: found {found} stands; allowed: 2 to {MAX_STANDS}")]
-    Stands {
-        /// The number found.
-        found: usize,
-    },
-    /// Walls part the city.
-    #[error("world.taxi.map: found no way from stand {from} to all cells; allowed: a way to all")]
-    Parted {
-        /// The stand.
-        from: char,
-    },
-}
 
 /// A direction of travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,10 +48,11 @@ pub(super) struct City {
 }
 
 impl City {
-    /// Reads the lines of a map.
-    pub(super) fn read(map: &[String]) -> Result<Self, CityError> {
+    /// Reads the lines of a map. Problems have their places below the taxi's settings.
+    pub(super) fn read(map: &[String]) -> Result<Self, Problem> {
         if !(1..=MAX_SIDE).contains(&map.len()) {
-            return Err(CityError::Rows { found: map.len() });
+            let found = format!("{} rows", map.len());
+            return Err(Problem::new("map", found, format!("1 to {MAX_SIDE}")));
         }
         let length = map[0].chars().count();
         let mut city = Self {
@@ -114,14 +67,15 @@ impl City {
         }
         let found = city.stands.len();
         if !(2..=MAX_STANDS).contains(&found) {
-            return Err(CityError::Stands { found });
+            let found = format!("{found} stands");
+            return Err(Problem::new("map", found, format!("2 to {MAX_STANDS}")));
         }
         city.neighbours = (0..city.cells()).map(|cell| city.around(cell)).collect();
         city.check_ways()?;
         Ok(city)
     }
 
-    fn read_row(&mut self, row: usize, line: &str, length: usize) -> Result<(), CityError> {
+    fn read_row(&mut self, row: usize, line: &str, length: usize) -> Result<(), Problem> {
         let found = line.chars().count();
         let odd = found % 2 == 1 && found < 2 * MAX_SIDE;
         if !odd || found != length {
@@ -129,18 +83,19 @@ impl City {
                 true => length.to_string(),
                 false => format!("an odd number up to {}", 2 * MAX_SIDE - 1),
             };
-            return Err(CityError::Length {
-                row,
-                found,
-                allowed,
-            });
+            return Err(Problem::new(
+                format!("map[{row}]"),
+                format!("{found} characters"),
+                format!(
+                    "{allowed}, a cell, then ':' or '|' and a cell any number of times, in every \
+                     row alike"
+                ),
+            ));
         }
         for (column, found) in line.chars().enumerate() {
-            let wrong = |allowed| CityError::Character {
-                row,
-                column,
-                found,
-                allowed,
+            let wrong = |allowed: &str| {
+                let place = format!("map[{row}], character {column}");
+                Problem::new(place, format!("{found:?}"), allowed)
             };
             if column % 2 == 1 {
                 match found {
@@ -191,7 +146,7 @@ impl City {
         })
     }
 
-    fn check_ways(&self) -> Result<(), CityError> {
+    fn check_ways(&self) -> Result<(), Problem> {
         let (letter, stand) = self.stands[0];
         let mut reached = vec![false; self.cells()];
         reached[stand] = true;
@@ -205,7 +160,11 @@ impl City {
         }
         match reached.iter().all(|&cell| cell) {
             true => Ok(()),
-            false => Err(CityError::Parted { from: letter }),
+            false => Err(Problem::new(
+                "map",
+                format!("no way from stand {letter} to all cells"),
+                "a way to all",
+            )),
         }
     }
 }
@@ -213,7 +172,7 @@ impl City {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::defaults::TAXI_MAP;
+    use crate::worlds::taxi::model::MAP;
 
     fn read(map: &[&str]) -> Result<City, String> {
         let lines: Vec<_> = map.iter().map(|&line| line.to_owned()).collect();
@@ -222,7 +181,7 @@ mod tests {
 
     #[test]
     fn the_city_is_that_of_figure_2_6() {
-        let city = read(&TAXI_MAP).unwrap();
+        let city = read(&MAP).unwrap();
         assert_eq!((city.columns, city.rows), (5, 5));
         assert_eq!(city.stands, [('R', 0), ('G', 4), ('Y', 20), ('B', 23)]);
         assert_eq!(city.to(0, Direction::North), 0);

@@ -24,32 +24,24 @@
 mod catalogue;
 mod city;
 mod exact;
+mod model;
 mod scene;
 
 use rand::RngExt;
-use thiserror::Error;
 
 use self::catalogue::{
     AT_DESTINATION, AT_PASSENGER, DELIVERED, EAST, INPUTS, PICKUP, PUTDOWN, RIDING, SOUTH, WAITING,
     WEST,
 };
-pub use self::city::CityError;
 use self::city::{City, Direction};
+pub use self::model::TaxiModel;
 use super::finite::FiniteModel;
 use super::{Catalogue, StateType, SubtaskId, World};
 use crate::random::Stream;
-use crate::scenario::TaxiModel;
+use crate::rules::Problem;
 
 /// States drawn before none counts as to be had.
 const MAX_DRAWS: usize = 10_000;
-
-/// Why the world cannot be built.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum TaxiError {
-    /// The map is not that of a city.
-    #[error(transparent)]
-    City(#[from] CityError),
-}
 
 /// Where the passenger is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,7 +106,7 @@ impl TaxiWorld {
     ///
     /// # Errors
     /// When the map is not that of a city.
-    pub fn new(model: &TaxiModel) -> Result<Self, TaxiError> {
+    pub fn new(model: &TaxiModel) -> Result<Self, Problem> {
         let city = City::read(&model.map)?;
         Ok(Self {
             catalogue: catalogue::catalogue(&city, model),

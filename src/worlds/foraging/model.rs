@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::defaults as d;
+use super::{ForagingWorld, defaults as d, rules};
+use crate::rules::{Check, Problem};
+use crate::worlds::{Exploration, Settings, TrainingModel};
 
 /// A robot finds a battery, captures it and brings it to the nest (Thesis 4.2).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,6 +31,22 @@ pub struct ForagingModel {
     /// Length of a time step in seconds.
     #[serde(default = "time_step")]
     pub time_step_s: f64,
+}
+
+impl Settings for ForagingModel {
+    type World = ForagingWorld;
+
+    fn check(&self, check: &mut Check) {
+        rules::check(check, self);
+    }
+
+    fn build(&self) -> Result<ForagingWorld, Problem> {
+        ForagingWorld::new(self)
+    }
+
+    fn trains_primitives(&self) -> bool {
+        true
+    }
 }
 
 fn time_step() -> f64 {
@@ -302,13 +320,13 @@ impl Default for TrainingModels {
             steps: d::TRAINING_STEPS,
             episode_steps: d::EXPLORING_EPISODE_STEPS,
             exploration: Exploration::Uniform,
-            temperature_decrease: d::TEMPERATURE_DECREASE_SLOW,
+            temperature_decrease: d::EXPLORING_TEMPERATURE_DECREASE,
         };
         let targeting = TrainingModel {
             steps: d::TRAINING_STEPS,
             episode_steps: d::TARGET_EPISODE_STEPS,
             exploration: Exploration::Softmax,
-            temperature_decrease: d::TEMPERATURE_DECREASE,
+            temperature_decrease: d::TARGET_TEMPERATURE_DECREASE,
         };
         Self {
             avoid: exploring.clone(),
@@ -320,33 +338,17 @@ impl Default for TrainingModels {
     }
 }
 
-/// Training of one primitive subtask.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TrainingModel {
-    /// Time steps in all.
-    pub steps: u32,
-    /// Time steps after which an episode ends and the robot is put elsewhere.
-    pub episode_steps: u32,
-    /// How actions are chosen while training.
-    pub exploration: Exploration,
-    /// With `softmax`: the temperature is multiplied by this at the end of each episode.
-    pub temperature_decrease: f64,
-}
-
-/// Choice of actions while a primitive subtask is trained.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Exploration {
-    /// All actions alike.
-    Uniform,
-    /// Softmax with a temperature that falls from episode to episode.
-    Softmax,
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    /// The settings of a shipped environment.
+    pub(in super::super) fn environment(number: usize) -> ForagingModel {
+        let scenarios = concat!(env!("CARGO_MANIFEST_DIR"), "/scenarios");
+        let text = std::fs::read_to_string(format!("{scenarios}/environment-{number}.json"));
+        let mut scenario: serde_json::Value = serde_json::from_str(&text.unwrap()).unwrap();
+        serde_json::from_value(scenario["world"]["foraging"].take()).unwrap()
+    }
 
     #[test]
     fn a_fence_is_cut_at_its_slits() {
