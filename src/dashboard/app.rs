@@ -177,7 +177,7 @@ impl App {
     fn on_screen(&self) -> Vec<ViewId> {
         match self.view {
             ViewId::Overview => {
-                let placed = panels(self.body(), self.desk.scenery());
+                let placed = panels(self.body(), &self.desk);
                 placed.into_iter().map(|(id, _)| id).collect()
             }
             view => vec![view],
@@ -275,6 +275,7 @@ impl App {
             Action::Back if self.view == ViewId::Overview => return vec![Effect::Back],
             Action::Back => self.view = ViewId::Overview,
             Action::Open if self.view == ViewId::Overview => self.view = desk.focus,
+            Action::Open => self.view = self.view.opens().unwrap_or(self.view),
             Action::NextPanel => self.desk.focus = self.neighbour(1),
             Action::PreviousPanel => self.desk.focus = self.neighbour(-1),
             Action::Freeze => desk.toggle_freeze(),
@@ -312,7 +313,7 @@ impl App {
 
     /// The panel after, or before, the one that has the focus.
     fn neighbour(&self, by: isize) -> ViewId {
-        let placed = panels(self.body(), self.desk.scenery());
+        let placed = panels(self.body(), &self.desk);
         let here = placed.iter().position(|(id, _)| *id == self.desk.focus);
         let count = placed.len().max(1) as isize;
         let next = here.map_or(0, |here| (here as isize + by).rem_euclid(count));
@@ -384,7 +385,7 @@ impl App {
         header::draw(desk, self.view, area, buffer);
         match self.view {
             ViewId::Overview => {
-                for (id, place) in panels(body(area), desk.scenery()) {
+                for (id, place) in panels(body(area), desk) {
                     self.draw_panel(id, place, id == desk.focus, buffer);
                 }
             }

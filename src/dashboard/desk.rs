@@ -91,6 +91,8 @@ pub struct Desk {
     pub size: (u16, u16),
     /// The individual that is shown.
     pub chosen: Chosen,
+    /// The node of the hierarchy that is selected, if the hierarchy has as many.
+    pub node: usize,
     /// The individual that others are compared with, if the person has named one.
     pub marked: Option<u64>,
     /// The panel of the overview that keys act on.
@@ -132,6 +134,7 @@ impl Desk {
             keys,
             size: (80, 24),
             chosen: Chosen::Best,
+            node: 0,
             marked: None,
             focus: ViewId::Arena,
             clock: Duration::ZERO,
@@ -342,6 +345,18 @@ impl Desk {
             Some((record.generation, staged))
         });
         staged.or_else(|| Some((self.shown()?.generation, self.selected()?)))
+    }
+
+    /// The hierarchy of that individual.
+    #[must_use]
+    pub fn looked_at_tree(&self) -> Option<Tree> {
+        self.tree(self.looked_at()?.1)
+    }
+
+    /// The node of a hierarchy that is selected: the last where it has not so many.
+    #[must_use]
+    pub fn node_in(&self, tree: &Tree) -> usize {
+        self.node.min(tree.nodes().len().saturating_sub(1))
     }
 
     /// The individual that should be on the stage.

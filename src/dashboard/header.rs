@@ -128,9 +128,13 @@ pub(super) fn hint_bar(
         ViewId::Overview => [AROUND, COMMON, hints],
         _ => [hints, &[Action::Back], COMMON],
     };
-    let actions = order.into_iter().flatten().copied();
-    let useful = actions.filter(|action| is_useful(desk.mode, *action));
-    let useful = useful.filter(|action| !always.contains(action));
+    let mut actions: Vec<_> = always.to_vec();
+    for &action in order.into_iter().flatten() {
+        if is_useful(desk.mode, action) && !actions.contains(&action) {
+            actions.push(action);
+        }
+    }
+    let useful = actions.into_iter().skip(always.len());
     put_hints(&desk.look, &desk.keys, useful, always, line, buffer);
 }
 

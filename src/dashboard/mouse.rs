@@ -1,7 +1,8 @@
 //! What the mouse does, where it is turned on.
 //!
 //! A click on a panel of the overview gives it the focus, a second one opens it; a click on
-//! a line of a list selects it. The wheel is that of the list under the pointer.
+//! a line of a list selects it, one on the line that is selected opens it. The wheel is that of
+//! the list under the pointer.
 
 use ratatui::crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::{Position, Rect};
@@ -60,6 +61,32 @@ impl Mouse {
     }
 }
 
+/// What a click on a view has done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Clicked {
+    /// There was nothing to select.
+    Nothing,
+    /// It has selected something.
+    Selected,
+    /// It met what was selected before.
+    Again,
+}
+
+impl Clicked {
+    /// A click on one of several things, or on none, when `before` was selected; `select`
+    /// selects another.
+    pub(super) fn on<T: PartialEq>(thing: Option<T>, before: T, select: impl FnOnce(T)) -> Self {
+        match thing {
+            None => Self::Nothing,
+            Some(thing) if thing == before => Self::Again,
+            Some(thing) => {
+                select(thing);
+                Self::Selected
+            }
+        }
+    }
+}
+
 /// Which line of a list is at a place: the list fills an area below a head of so many lines.
 pub(super) fn line_at(at: Position, area: Rect, head: u16) -> Option<usize> {
     let below = at.y.checked_sub(area.y.saturating_add(head))?;
@@ -89,9 +116,14 @@ impl App {
             return self.perform(action);
         }
         let view = self.views.iter_mut().find(|(known, _)| *known == id);
-        let selected =
-            view.is_some_and(|(_, view)| view.click(&mut self.desk, inside(area), mouse.at));
-        match had_focus && !selected && self.view == ViewId::Overview {
+        let clicked = view.map_or(Clicked::Nothing, |(_, view)| {
+            view.click(&mut self.desk, inside(area), mouse.at)
+        });
+        let opens = match (self.view, clicked) {
+            (ViewId::Overview, clicked) => had_focus && clicked != Clicked::Selected,
+            (_, clicked) => clicked == Clicked::Again,
+        };
+        match opens {
             true => self.perform(Action::Open),
             false => Vec::new(),
         }
@@ -102,7 +134,7 @@ impl App {
         let (width, height) = self.desk.size;
         let body = body(Rect::new(0, 0, width, height));
         let placed = match self.view {
-            ViewId::Overview => panels(body, self.desk.scenery()),
+            ViewId::Overview => panels(body, &self.desk),
             view => vec![(view, body)],
         };
         placed.into_iter().find(|(_, area)| area.contains(at))

@@ -224,6 +224,57 @@ fn help_names_every_key_of_a_view() {
     assert!(!text.contains("The panel before"), "{text}");
 }
 
+/// A column of a chart keeps its meaning while generations come: less to send, and a picture that
+/// does not jitter.
+#[test]
+fn the_axis_of_generations_stays_for_a_while() {
+    let mut screen = live();
+    screen.0.update(Input::Resize(120, 40));
+    screen.press("4");
+    // The line below a chart: the ends of the axis, and the generation shown.
+    let axis = |screen: &Screen| {
+        let text = screen.text();
+        let lines = text.lines().map(|line| line.trim_matches('│'));
+        let is_axis = |line: &&str| {
+            let mut words = line.split_whitespace();
+            line.contains(" 1 ") && words.all(|word| word.parse::<u32>().is_ok())
+        };
+        let axes: Vec<_> = lines.filter(is_axis).map(str::to_owned).collect();
+        let [fitness, difference] = &axes[..] else {
+            panic!("{text}")
+        };
+        assert_eq!(fitness, difference, "one axis for both charts");
+        let ends: Vec<_> = fitness.match_indices(['1', '6']).collect();
+        let ends = ends.into_iter().map(|(at, end)| (at, end.to_owned()));
+        ends.collect::<Vec<_>>()
+    };
+    let before = axis(&screen);
+    assert_eq!(before.len(), 2, "{before:?}");
+    screen.tell(foraging().events[4].clone());
+    assert_eq!(generation(&screen), 4);
+    assert_eq!(axis(&screen), before);
+}
+
+/// Keys select a subtask, below the tree it is explained, and the inspector takes it apart.
+#[test]
+fn a_subtask_is_selected_in_the_hierarchy() {
+    let mut screen = screen();
+    let tree = screen.0.app().desk().looked_at_tree().unwrap();
+    screen.press("3 j");
+    let subtask = foraging().bench.catalogue().subtask(tree.subtask(1));
+    let about = format!("{}: {}", subtask.name, subtask.purpose);
+    assert!(
+        screen.text().contains(&about),
+        "{about} in\n{}",
+        screen.text()
+    );
+    screen.press("G");
+    assert_eq!(screen.0.app().desk().node_in(&tree), tree.nodes().len() - 1);
+    screen.press("k k enter");
+    assert_eq!(screen.0.app().view(), ViewId::Inspector);
+    assert_eq!(screen.0.app().desk().node_in(&tree), tree.nodes().len() - 3);
+}
+
 #[test]
 fn selecting_puts_an_individual_on_the_stage() {
     let mut screen = screen();

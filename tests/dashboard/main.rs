@@ -17,5 +17,6 @@ mod behaviour;
 mod frames;
 mod mouse;
 mod recorded;
+mod room;
 mod runs;
 mod textbook;

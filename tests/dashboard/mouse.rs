@@ -40,7 +40,7 @@ fn a_click_gives_a_panel_the_focus_and_a_second_opens_it() {
 }
 
 #[test]
-fn a_click_selects_an_individual_and_a_second_opens_the_table() {
+fn a_click_selects_an_individual_and_a_second_opens_it() {
     let mut screen = foraging().screen("dark", Unicode, (120, 40));
     for rank in [3, 2, 5] {
         let id = screen.0.app().desk().shown().unwrap().individuals[rank - 1].id;
@@ -59,6 +59,8 @@ fn a_click_selects_an_individual_and_a_second_opens_the_table() {
     assert_eq!(screen.0.app().view(), ViewId::Population);
     act(&mut screen, Gesture::Click, "    1 ");
     assert_eq!(selected(&screen), 1);
+    act(&mut screen, Gesture::Click, "▸   1");
+    assert_eq!(screen.0.app().view(), ViewId::Inspector);
 }
 
 #[test]
@@ -73,6 +75,39 @@ fn a_click_selects_a_subtask_of_the_inspector() {
         assert!(screen.text().contains("▸"), "{}", screen.text());
         assert_eq!(find(&screen.text(), "▸ ").y, find(&screen.text(), name).y);
     }
+}
+
+/// In the hierarchy, as its panel and as a view; the inspector speaks of the same subtask.
+#[test]
+fn a_click_selects_a_subtask_and_a_second_takes_it_apart() {
+    let mut screen = foraging().screen("dark", Unicode, (120, 40));
+    let tree = screen.0.app().desk().looked_at_tree().unwrap();
+    let last = tree.nodes().len() - 1;
+    let line = format!(
+        "└─ {}",
+        foraging()
+            .bench
+            .catalogue()
+            .subtask(tree.subtask(last))
+            .name
+    );
+    act(&mut screen, Gesture::Click, &line);
+    assert_eq!(screen.0.app().desk().node_in(&tree), last);
+    assert_eq!(screen.0.app().view(), ViewId::Overview);
+    act(&mut screen, Gesture::WheelUp, &line);
+    assert_eq!(screen.0.app().desk().node_in(&tree), last - 1);
+    act(&mut screen, Gesture::Click, &line);
+    act(&mut screen, Gesture::Click, &line);
+    assert_eq!(screen.0.app().view(), ViewId::Hierarchy);
+    act(&mut screen, Gesture::Click, "rank");
+    assert_eq!(
+        screen.0.app().view(),
+        ViewId::Hierarchy,
+        "nothing was there"
+    );
+    act(&mut screen, Gesture::Click, &line);
+    assert_eq!(screen.0.app().view(), ViewId::Inspector);
+    assert_eq!(find(&screen.text(), "▸ ").y, find(&screen.text(), &line).y);
 }
 
 #[test]

@@ -13,7 +13,7 @@ const HAND_MADE: &str = "(Root (Get (NavigateToPassenger North South East West) 
      (Put (NavigateToDestination North South East West) Putdown))";
 
 /// The README's recipe: nothing varies, so that all that happens is learning.
-fn learned() -> &'static Recorded {
+pub fn learned() -> &'static Recorded {
     static RUN: OnceLock<Recorded> = OnceLock::new();
     RUN.get_or_init(|| {
         let population = vec![format!("{HAND_MADE:?}"); 6].join(",");

@@ -39,6 +39,8 @@ pub struct Chart {
     pub cursor: Option<f64>,
     /// Digits after the point of the values' labels.
     pub digits: usize,
+    /// Least columns before the curves: those of another chart above or below it.
+    pub margin: u16,
 }
 
 impl Chart {
@@ -63,17 +65,44 @@ impl Chart {
             curves,
             cursor: None,
             digits: 0,
+            margin: 0,
         }
+    }
+
+    /// Lets the ends of the values be round numbers: they are read easily, and stay where
+    /// they are while values change a little.
+    #[must_use]
+    pub fn rounded(mut self) -> Self {
+        let [low, high] = self.up;
+        let step = round_up((high - low) / 20.0);
+        if step.is_normal() {
+            self.up = [(low / step).floor() * step, (high / step).ceil() * step];
+            self.digits = digits(self.up);
+        }
+        self
+    }
+
+    /// The labels of the largest and the smallest value.
+    fn labels(&self) -> [String; 2] {
+        let digits = self.digits;
+        [self.up[1], self.up[0]].map(|value| format!("{value:.digits$}"))
+    }
+
+    /// Columns before the curves.
+    #[must_use]
+    pub fn left(&self) -> u16 {
+        let labels = self.labels();
+        let widest = labels.iter().map(|label| width(label)).max().unwrap_or(0);
+        self.margin
+            .max(u16::try_from(widest + 1).unwrap_or(u16::MAX))
     }
 
     /// Draws it; the labels of the axis take the last row, those of the values the
     /// first columns.
     pub fn draw(&self, look: &Look, area: Rect, buffer: &mut Buffer) {
         let dim = look.style(Paint::Dim);
-        let digits = self.digits;
-        let labels = [self.up[1], self.up[0]].map(|value| format!("{value:.digits$}"));
-        let left = labels.iter().map(|label| width(label)).max().unwrap_or(0) + 1;
-        let left = u16::try_from(left).unwrap_or(u16::MAX).min(area.width);
+        let labels = self.labels();
+        let left = self.left().min(area.width);
         let axis = u16::from(area.height > 2);
         let plot = Rect {
             x: area.x + left,
@@ -146,6 +175,38 @@ impl Chart {
     }
 }
 
+/// The least of 1, 2 and 5 times powers of ten that is not below a positive value.
+fn round_up(value: f64) -> f64 {
+    let power = 10_f64.powf(value.log10().floor());
+    let steps = [1.0, 2.0, 5.0].map(|digit| digit * power);
+    let fits = steps.into_iter().find(|step| *step >= value * (1.0 - 1e-9));
+    fits.unwrap_or(10.0 * power)
+}
+
+/// Digits after the point that two round numbers have.
+fn digits(numbers: [f64; 2]) -> usize {
+    let is_whole = |number: f64| (number - number.round()).abs() < 1e-6;
+    let shown = |digits: &i32| {
+        numbers
+            .iter()
+            .all(|number| is_whole(number * 10_f64.powi(*digits)))
+    };
+    (0..6).find(shown).unwrap_or(6) as usize
+}
+
+/// Where an axis ends that counts something still going on: at the least of 10, 15, 20, 30, 40, 60
+/// and 80 times powers of ten that has room for `reached`, no further than `limit`. It stays there
+/// for a while, so that a place on the axis keeps its meaning, and two thirds of it are
+/// filled at least.
+#[must_use]
+pub fn axis_end(reached: u64, limit: u64) -> u64 {
+    const STEPS: [u64; 7] = [10, 15, 20, 30, 40, 60, 80];
+    let powers = (0..).map_while(|power| 10_u64.checked_pow(power));
+    let mut ends = powers.flat_map(|power| STEPS.map(|step| step.saturating_mul(power)));
+    let end = ends.find(|end| *end >= reached).unwrap_or(u64::MAX);
+    end.min(limit.max(reached))
+}
+
 /// A range that is one.
 fn widened([low, high]: [f64; 2]) -> [f64; 2] {
     match (low.is_finite() && high.is_finite(), high > low) {
@@ -163,5 +224,36 @@ fn draw_curve(canvas: &mut Canvas<'_>, curve: &Curve, layer: Layer) {
         if let (Some(from), Some(to)) = (from, to) {
             canvas.line(*from, *to, layer, curve.paint);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_stays_for_a_while_and_is_mostly_filled() {
+        let ends: Vec<_> = [1, 10, 11, 16, 60, 61, 81, 100, 101, 151]
+            .map(|reached| axis_end(reached, 1000))
+            .to_vec();
+        assert_eq!(ends, [10, 10, 15, 20, 60, 80, 100, 100, 150, 200]);
+        assert_eq!((axis_end(41, 50), axis_end(7, 6)), (50, 7));
+        for reached in (11..5000).chain([u64::MAX / 3, u64::MAX]) {
+            let end = axis_end(reached, u64::MAX);
+            assert!(end >= reached && end / 3 * 2 <= reached, "{reached}: {end}");
+        }
+    }
+
+    #[test]
+    fn ends_of_values_are_round() {
+        let labels = |up| {
+            let chart = Chart::of(Vec::new(), up).rounded();
+            chart.up.map(|value| format!("{value:.0$}", chart.digits))
+        };
+        assert_eq!(labels([392.0, 1006.0]), ["350", "1050"]);
+        assert_eq!(labels([-18.0, 0.0]), ["-18", "0"]);
+        assert_eq!(labels([11.23, 11.9]), ["11.2", "11.9"]);
+        assert_eq!(labels([7.0, 7.0]), ["7", "8"]);
+        assert_eq!(labels([-1e308, 1e308]).len(), 2);
     }
 }

@@ -9,11 +9,11 @@ mod text;
 mod theme;
 
 pub use canvas::{Canvas, Layer};
-pub use chart::{Chart, Curve};
+pub use chart::{Chart, Curve, axis_end};
 pub use paint::Paint;
 pub use signs::Signs;
 pub use spark::sparkline;
-pub use text::{fitted, fitted_end, fitted_parts, one_line, put, width, wrapped};
+pub use text::{fitted, fitted_end, fitted_parts, one_line, put, shortened, width, wrapped};
 pub use theme::{StyleError, Theme};
 
 use ratatui::style::Style;

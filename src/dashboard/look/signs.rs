@@ -42,6 +42,8 @@ pub struct Signs {
     pub unfilled: &'static str,
     /// What points at the selected line.
     pub pointer: &'static str,
+    /// What is lit: on the path from root to action.
+    pub lit: &'static str,
     /// Ascending, descending order.
     pub order: [&'static str; 2],
     /// Running, paused, stepping, finished, stopped.
@@ -99,6 +101,7 @@ pub static UNICODE: Signs = Signs {
     filled: "━",
     unfilled: "─",
     pointer: "▸",
+    lit: "•",
     order: ["▲", "▼"],
     running: "▶",
     paused: "‖",
@@ -150,6 +153,7 @@ pub static ASCII: Signs = Signs {
     filled: "=",
     unfilled: "-",
     pointer: ">",
+    lit: "*",
     order: ["^", "v"],
     running: ">",
     paused: "||",

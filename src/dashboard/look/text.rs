@@ -45,6 +45,34 @@ pub fn fitted(text: &str, columns: usize, signs: &Signs) -> String {
     cut
 }
 
+/// A name in a number of columns: where it is too long its words are shortened, the longest
+/// first, so that each can still be told: `NavToPass` for `NavigateToPassenger`. A name of one
+/// word is cut.
+#[must_use]
+pub fn shortened(name: &str, columns: usize, signs: &Signs) -> String {
+    let mut words: Vec<String> = Vec::new();
+    for letter in name.chars() {
+        match words.last_mut() {
+            Some(word) if !letter.is_uppercase() => word.push(letter),
+            _ => words.push(String::from(letter)),
+        }
+    }
+    let mut excess = name.width().saturating_sub(columns);
+    if words.len() < 2 || columns < 2 * words.len() {
+        return fitted(name, columns, signs);
+    }
+    while excess > 0 {
+        // The first of the longest.
+        let longest = words
+            .iter_mut()
+            .rev()
+            .max_by_key(|word| word.chars().count());
+        longest.and_then(String::pop);
+        excess -= 1;
+    }
+    words.concat()
+}
+
 /// The end of a text in a number of columns; an ellipsis before it says what is left out.
 #[must_use]
 pub fn fitted_end(text: &str, columns: usize, signs: &Signs) -> String {
@@ -119,6 +147,11 @@ mod tests {
         assert_eq!(fitted("abc", 3, &ASCII), "abc");
         assert_eq!(fitted("abc", 0, &ASCII), "");
         assert_eq!(wrapped("scored 1 22 3", 9, "  "), ["scored 1", "  22 3"]);
+        assert_eq!(shortened("FindNest", 8, &UNICODE), "FindNest");
+        assert_eq!(shortened("NavigateToPassenger", 9, &UNICODE), "NavToPass");
+        assert_eq!(shortened("ApproachBattery", 8, &ASCII), "ApprBatt");
+        assert_eq!(shortened("Putdown", 5, &ASCII), "Putd~");
+        assert_eq!(shortened("ApproachNest", 3, &ASCII), "Ap~");
         assert_eq!(fitted_end("runs/taxi", 5, &UNICODE), "…taxi");
         assert_eq!(fitted_parts("id 7 · halted", 12, &UNICODE), "id 7");
         assert_eq!(fitted_parts("id 7 · halted", 13, &UNICODE), "id 7 · halted");

@@ -6,9 +6,10 @@ use ratatui::layout::Rect;
 use super::{View, case};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, put};
+use crate::dashboard::look::{Look, Paint, fitted, put, width, wrapped};
 use crate::dashboard::scene::{Scene, draw_scene};
 use crate::lab::specimen::Rollout;
+use crate::worlds::StateType;
 use crate::worlds::scene::Snapshot;
 
 /// A rollout of the selected individual.
@@ -24,8 +25,8 @@ use crate::worlds::scene::Snapshot;
 /// ```
 pub(super) struct Arena;
 
-/// Rows below the arena.
-const FOOT: u16 = 2;
+/// Most rows of the state below the arena.
+const STATE: usize = 3;
 
 impl View for Arena {
     fn caption(&self, desk: &Desk) -> String {
@@ -43,7 +44,7 @@ impl View for Arena {
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let foot = FOOT.min(area.height / 4);
+        let foot = (state_rows(desk, area) + 1).min(area.height / 3);
         let above = Rect {
             height: area.height - foot,
             ..area
@@ -92,50 +93,97 @@ fn trail(rollout: &dyn Rollout) -> Vec<[f64; 2]> {
     rollout.status().trail.iter().copied().collect()
 }
 
-/// Time step, state type, and how the latest trials ended.
+/// Rows that the state takes: as many as that with the longest name, so that the arena keeps
+/// its size.
+fn state_rows(desk: &Desk, area: Rect) -> u16 {
+    let variants = desk.bench.variants();
+    let cases: Vec<_> = match desk.scenery().grid.is_some() && variants.len() > 1 {
+        true => variants.iter().map(|case| Some(case.as_str())).collect(),
+        false => vec![None],
+    };
+    let types = desk.catalogue().types();
+    let texts = types.flat_map(|state_type| {
+        let texts = cases.iter();
+        texts.map(move |case| state(desk, state_type, *case))
+    });
+    let rows = texts.map(|text| wrapped(&text, area.width.into(), "").len());
+    rows.max().unwrap_or(1).min(STATE) as u16
+}
+
+/// State type, time step, and how the latest trials ended.
 fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut Buffer) {
     let look = &desk.look;
+    let columns = usize::from(area.width);
     let (Some(rollout), Some(snapshot)) = (desk.stage.rollout(), snapshot) else {
         let why = match desk.stage.refused() {
             Some(why) => why,
             None if desk.shown().is_none() => "no individual has lived yet",
             None => "the individual is being fetched",
         };
-        let text = fitted(why, usize::from(area.width), look.signs);
-        put(buffer, area, (0, 0), &text, look.style(Paint::Dim));
+        put_wrapped(look, (why, Paint::Dim), area, buffer);
         return;
     };
     let status = rollout.status();
     let (text, paint) = match status.ended {
         Some(record) if record.delivered => (String::from("done"), Paint::Good),
         Some(_) => (String::from("gave up at the limit"), Paint::Bad),
-        None => (state(desk, snapshot), Paint::Notice),
+        None => {
+            let case = case(desk, snapshot);
+            (state(desk, snapshot.state_type, case), Paint::Notice)
+        }
     };
-    let text = fitted(&text, usize::from(area.width), look.signs);
-    put(buffer, area, (0, 0), &text, look.style(paint));
-    let step = format!("trial {} step {:<4} ", status.trial, status.steps);
-    let mut column = put(buffer, area, (0, 1), &step, look.style(Paint::Text));
-    if !status.history.is_empty() {
-        column = put(buffer, area, (column, 1), "before ", look.style(Paint::Dim));
+    let last = area.height.saturating_sub(1);
+    let above = Rect {
+        height: last.max(area.height.min(1)),
+        ..area
+    };
+    put_wrapped(look, (&text, paint), above, buffer);
+    if last == 0 {
+        return;
     }
+    let step = format!("trial {} step {:<4} ", status.trial, status.steps);
+    let mut column = put(buffer, area, (0, last), &step, look.style(Paint::Text));
+    let mut before = Some("before ");
     for record in status.history.iter().rev() {
         let (text, paint) = match record.delivered {
             true => (format!("{} ", record.steps), Paint::Text),
             false => (format!("{}! ", record.steps), Paint::Bad),
         };
-        column = put(buffer, area, (column, 1), &text, look.style(paint));
+        // A number that is cut would be another number.
+        let label = before.unwrap_or("");
+        if usize::from(column) + width(label) + width(text.trim_end()) > columns {
+            break;
+        }
+        column = put(buffer, area, (column, last), label, look.style(Paint::Dim));
+        column = put(buffer, area, (column, last), &text, look.style(paint));
+        before = None;
+    }
+}
+
+/// Writes a text in as many lines as there is room for.
+fn put_wrapped(look: &Look, (text, paint): (&str, Paint), area: Rect, buffer: &mut Buffer) {
+    let columns = usize::from(area.width);
+    let mut lines = wrapped(text, columns, "");
+    if let Some(rest) = lines.get(usize::from(area.height).saturating_sub(1)..) {
+        let rest = rest.join(" ");
+        lines.truncate(usize::from(area.height).saturating_sub(1));
+        lines.push(rest);
+    }
+    for (row, line) in (0..area.height).zip(&lines) {
+        let line = fitted(line, columns, look.signs);
+        put(buffer, area, (0, row), &line, look.style(paint));
     }
 }
 
 /// The state type's number and what is the case in it.
-fn state(desk: &Desk, snapshot: &Snapshot) -> String {
-    let number = snapshot.state_type.number();
+fn state(desk: &Desk, state_type: StateType, case: Option<&str>) -> String {
+    let number = state_type.number();
     let types = &desk.catalogue().state_types;
     let Some(info) = types.get(number - 1) else {
         return String::from("done");
     };
     let description = info.description;
-    match case(desk, snapshot) {
+    match case {
         Some(case) => format!("{case}: {number} {description}"),
         None => format!("{number} {description}"),
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::{THROUGH_TIME, View, nothing_yet};
+use super::{THROUGH_TIME, View, nothing_yet, over_generations};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Look, Paint, put};
@@ -46,7 +46,7 @@ impl View for Fitness {
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let (Some(chart), Some(shown)) = (fitness_chart(desk), desk.shown()) else {
+        let (Some(mut chart), Some(shown)) = (fitness_chart(desk), desk.shown()) else {
             return nothing_yet(desk, area, buffer);
         };
         let look = &desk.look;
@@ -59,10 +59,16 @@ impl View for Fitness {
             Constraint::Length(u16::from(two)),
         ];
         let [above, legend, below, difference] = Layout::vertical(rows).areas(area);
+        let mut difference_chart = difference_chart(desk);
+        if two {
+            // One axis for both.
+            chart.margin = difference_chart.left();
+            difference_chart.margin = chart.left();
+        }
         chart.draw(look, above, buffer);
         draw_legend(look, shown, legend, buffer);
         if two {
-            difference_chart(desk).draw(look, below, buffer);
+            difference_chart.draw(look, below, buffer);
             let text = format!("difference to the best {:.1}", shown.mean_difference);
             put(
                 buffer,
@@ -139,9 +145,8 @@ fn fitness_chart(desk: &Desk) -> Option<Chart> {
         paint: *paint,
         letter: None,
     });
-    let mut chart = Chart::of(curves.collect(), [lowest * 0.9, lowest]);
-    chart.cursor = cursor(desk);
-    Some(chart)
+    let least = [lowest * 0.9, lowest];
+    Some(over_generations(desk, curves.collect(), least).rounded())
 }
 
 fn difference_chart(desk: &Desk) -> Chart {
@@ -152,14 +157,7 @@ fn difference_chart(desk: &Desk) -> Chart {
         paint: Paint::Series1,
         letter: None,
     };
-    let mut chart = Chart::of(vec![curve], [-1.0, 0.0]);
-    chart.cursor = cursor(desk);
-    chart
-}
-
-/// The generation shown.
-fn cursor(desk: &Desk) -> Option<f64> {
-    desk.shown().map(|record| record.generation as f64)
+    over_generations(desk, vec![curve], [-1.0, 0.0]).rounded()
 }
 
 fn draw_legend(look: &Look, shown: &GenerationRecord, line: Rect, buffer: &mut Buffer) {
@@ -173,7 +171,8 @@ fn draw_legend(look: &Look, shown: &GenerationRecord, line: Rect, buffer: &mut B
             true => String::new(),
             false => format!("{} ", look.signs.series[(2 - index) % 3]),
         };
-        let text = format!("{sign}{name} {steps:.0}");
+        let digits = usize::from(steps < 100.0);
+        let text = format!("{sign}{name} {steps:.digits$}");
         column = put(buffer, line, (column, 0), &text, look.style(*paint)) + 2;
     }
 }

@@ -83,11 +83,22 @@ pub(super) fn draw_lines(
     let area = area.intersection(buffer.area);
     let from = from.min(last_start(lines.len(), area.height));
     for (row, line) in lines.iter().skip(from).take(area.height.into()).enumerate() {
-        buffer.set_line(area.x, area.y + row as u16, line, area.width);
+        let y = area.y + row as u16;
+        buffer.set_line(area.x, y, line, area.width);
+        if line.width() > usize::from(area.width) && area.width > 0 {
+            let style = look.style(Paint::Dim);
+            buffer.set_string(area.right() - 1, y, look.signs.ellipsis, style);
+        }
     }
     let below = lines.len().saturating_sub(from + usize::from(area.height));
+    mark_more(look, [from, below], area, buffer);
+}
+
+/// Says how many lines there are above an area, and below.
+pub(super) fn mark_more(look: &Look, [above, below]: [usize; 2], area: Rect, buffer: &mut Buffer) {
+    let area = area.intersection(buffer.area);
     for (more, row, sign) in [
-        (from, 0, look.signs.order[0]),
+        (above, 0, look.signs.order[0]),
         (below, area.height.saturating_sub(1), look.signs.order[1]),
     ] {
         if more > 0 && area.width > 12 && area.height > 1 {

@@ -24,10 +24,11 @@ use thiserror::Error;
 
 pub(super) use overview::panels;
 
-use super::desk::Desk;
+use super::desk::{Activity, Desk};
 use super::input::Effect;
 use super::keys::Action;
-use super::look::{Paint, fitted, put};
+use super::look::{Chart, Curve, Paint, axis_end, fitted, put};
+use super::mouse::Clicked;
 use crate::evolution::Origin;
 use crate::worlds::Catalogue;
 use crate::worlds::scene::Snapshot;
@@ -117,6 +118,12 @@ impl ViewId {
         )
     }
 
+    /// The view that takes apart what is selected in it.
+    pub(super) fn opens(self) -> Option<Self> {
+        matches!(self, Self::Hierarchy | Self::Population | Self::Compare)
+            .then_some(Self::Inspector)
+    }
+
     /// Its title.
     #[must_use]
     pub fn title(self) -> &'static str {
@@ -154,10 +161,9 @@ pub(super) trait View: Send {
         None
     }
 
-    /// Selects what is at a place of the area that it was drawn into. Whether something else
-    /// was selected before.
-    fn click(&mut self, _desk: &mut Desk, _area: Rect, _at: Position) -> bool {
-        false
+    /// Selects what is at a place of the area that it was drawn into.
+    fn click(&mut self, _desk: &mut Desk, _area: Rect, _at: Position) -> Clicked {
+        Clicked::Nothing
     }
 
     /// Computes what drawing needs, after every input while the view is on the screen.
@@ -187,7 +193,7 @@ fn make(id: ViewId) -> Box<dyn View> {
     match id {
         ViewId::Overview => Box::new(overview::Overview),
         ViewId::Arena => Box::new(arena::Arena),
-        ViewId::Hierarchy => Box::new(hierarchy::Hierarchy::default()),
+        ViewId::Hierarchy => Box::new(hierarchy::Hierarchy),
         ViewId::Fitness => Box::new(fitness::Fitness),
         ViewId::Policy => Box::new(policy::Policy),
         ViewId::Population => Box::new(population::Population::default()),
@@ -207,6 +213,21 @@ const THROUGH_TIME: &[Action] = &[
     Action::Follow,
     Action::Play,
 ];
+
+/// Curves over the generations so far, the one shown marked. While there are more to come the
+/// axis has room for them.
+fn over_generations(desk: &Desk, curves: Vec<Curve>, least: [f64; 2]) -> Chart {
+    let mut chart = Chart::of(curves, least);
+    let shown = desk.shown().map(|record| record.generation);
+    chart.cursor = shown.map(|number| number as f64);
+    let is_over = matches!(desk.activity(), Activity::Finished | Activity::Stopped);
+    let latest = desk.model().latest().map(|record| record.generation);
+    if let (false, Some(latest)) = (is_over, latest) {
+        let limit = desk.scenario().evolution.generation_limit;
+        chart.across[1] = axis_end(latest, limit) as f64;
+    }
+    chart
+}
 
 /// Says why there is no individual to look at.
 fn nobody(desk: &Desk, area: Rect, buffer: &mut Buffer) {

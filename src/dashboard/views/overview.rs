@@ -3,10 +3,10 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::{View, ViewId};
+use super::{View, ViewId, policy};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::worlds::scene::Scenery;
+use crate::dashboard::look::width;
 
 /// Everything at a glance: the panels, as many as there is room for.
 pub(super) struct Overview;
@@ -14,7 +14,9 @@ pub(super) struct Overview;
 /// Columns below which there is room for four panels only.
 const WIDE: u16 = 110;
 /// Least columns of the arena.
-const ARENA: u16 = 28;
+const ARENA: u16 = 29;
+/// Least columns of the population.
+const POPULATION: u16 = 44;
 /// Columns of the status panel.
 const STATUS: u16 = 36;
 
@@ -28,12 +30,12 @@ const STATUS: u16 = 36;
 ///  ╭ Fitness ╮╭ Policy ────╮╭ Popul. ─╮    ╭ Fitness ────╮╭ Population ╮
 ///  ╰─────────╯╰────────────╯╰─────────╯    ╰─────────────╯╰────────────╯
 /// ```
-pub(in crate::dashboard) fn panels(area: Rect, scenery: &Scenery) -> Vec<(ViewId, Rect)> {
+pub(in crate::dashboard) fn panels(area: Rect, desk: &Desk) -> Vec<(ViewId, Rect)> {
     let upper = area.height * 14 / 25;
     let rows = Layout::vertical([Constraint::Length(upper), Constraint::Fill(1)]).areas(area);
     let [above, below]: [Rect; 2] = rows;
     // As wide as the world is for its height, cells being about twice as high as wide.
-    let [width, height] = scenery.extent;
+    let [width, height] = desk.scenery().extent;
     let arena = f64::from(upper.saturating_sub(2)) * 2.0 * width / height;
     let most = match area.width < WIDE {
         true => area.width / 2,
@@ -58,9 +60,9 @@ pub(in crate::dashboard) fn panels(area: Rect, scenery: &Scenery) -> Vec<(ViewId
     ];
     let [arena, hierarchy, status] = columns(above, upper);
     let lower = [
-        Constraint::Fill(4),
-        Constraint::Fill(4),
-        Constraint::Fill(5),
+        Constraint::Fill(1),
+        Constraint::Length(policy_columns(desk, area.width)),
+        Constraint::Length((area.width * 5 / 13).max(POPULATION)),
     ];
     let [fitness, policy, population] = columns(below, lower);
     vec![
@@ -71,6 +73,15 @@ pub(in crate::dashboard) fn panels(area: Rect, scenery: &Scenery) -> Vec<(ViewId
         (ViewId::Policy, policy),
         (ViewId::Population, population),
     ]
+}
+
+/// Columns of the policy panel: a share of all, and those of the longest name of a state type.
+fn policy_columns(desk: &Desk, all: u16) -> u16 {
+    let types = desk.catalogue().state_types.iter().enumerate();
+    let longest = types.map(|(index, info)| width(&policy::title(index, info.description)));
+    let wanted = longest.max().unwrap_or(0) + 4;
+    let wanted = u16::try_from(wanted).unwrap_or(u16::MAX);
+    wanted.min(all * 3 / 8).max(all * 4 / 13)
 }
 
 fn columns<const N: usize>(area: Rect, widths: [Constraint; N]) -> [Rect; N] {

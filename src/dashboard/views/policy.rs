@@ -7,10 +7,13 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::{THROUGH_TIME, View, letters, nothing_yet};
+use super::lines::percent;
+use super::{THROUGH_TIME, View, letters, nothing_yet, over_generations};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Chart, Curve, Paint, fitted, one_line, put, sparkline, width};
+use crate::dashboard::look::{
+    Chart, Curve, Paint, fitted, one_line, put, shortened, sparkline, width,
+};
 use crate::evolution::GenerationRecord;
 
 /// Primitive-selection probabilities of each state type (Thesis Figure 4.10): now, as a
@@ -75,6 +78,11 @@ impl View for Policy {
     }
 }
 
+/// The title of a state type.
+pub(super) fn title(index: usize, description: &str) -> String {
+    format!("{} {description}", index + 1)
+}
+
 /// A place for each state type, as many as there is room for.
 fn places(area: Rect, types: usize) -> Vec<Rect> {
     let columns = if area.width >= TWO_COLUMNS { 2 } else { 1 };
@@ -108,7 +116,7 @@ fn draw_type(
         ..area
     };
     let info = desk.catalogue().state_types.get(index);
-    let title = format!("{} {}", index + 1, info.map_or("", |info| info.description));
+    let title = title(index, info.map_or("", |info| info.description));
     let room = usize::from(area.width.saturating_sub(1));
     let title = fitted(&title, room, look.signs);
     let bar_row = u16::from(area.height > 1);
@@ -184,27 +192,27 @@ fn draw_bar(desk: &Desk, of: &BTreeMap<String, f64>, line: Rect, buffer: &mut Bu
             .add_modifier(Modifier::REVERSED);
         let room = usize::from(to.saturating_sub(from));
         let separator = if index > 0 { "|" } else { "" };
-        let text = label(
-            &one_line(name),
-            **share,
-            room.saturating_sub(separator.len()),
-        );
+        let room_for_label = room.saturating_sub(separator.len());
+        let text = label(desk, &one_line(name), **share, room_for_label);
         let text = format!("{separator}{text}");
         let text = fitted(&format!("{text:<room$}"), room, look.signs);
         from = put(buffer, line, (from, 0), &text, style);
     }
 }
 
-/// Name and share, as much of it as there is room for.
-fn label(name: &str, share: f64, room: usize) -> String {
-    let percent = format!("{:.0} %", share * 100.0);
-    let whole = format!("{name} {percent}");
-    let short: String = name.chars().take(room).collect();
-    match (width(&whole) <= room, width(name) <= room) {
-        (true, _) => whole,
-        (_, true) => name.to_owned(),
-        _ => short,
-    }
+/// Least columns of a shortened name.
+const SHORT: usize = 8;
+
+/// Name and share, as much of it as there is room for: the share is read off the bar too.
+fn label(desk: &Desk, name: &str, share: f64, room: usize) -> String {
+    let percent = format!(" {}", percent(share));
+    let rest = room.saturating_sub(width(&percent));
+    let percent = match rest >= width(name).min(SHORT) {
+        true => percent,
+        false => String::new(),
+    };
+    let name = shortened(name, room.saturating_sub(width(&percent)), desk.look.signs);
+    name + &percent
 }
 
 fn chart(desk: &Desk, index: usize) -> Chart {
@@ -230,7 +238,5 @@ fn chart(desk: &Desk, index: usize) -> Chart {
         let mut points = curve.points.iter().flatten();
         points.any(|point| point[1] >= SMALL)
     });
-    let mut chart = Chart::of(curves.collect(), [0.0, 1.0]);
-    chart.cursor = desk.shown().map(|record| record.generation as f64);
-    chart
+    over_generations(desk, curves.collect(), [0.0, 1.0])
 }

@@ -10,7 +10,7 @@ use crate::dashboard::desk::{Chosen, Desk};
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, one_line, put};
-use crate::dashboard::mouse::line_at;
+use crate::dashboard::mouse::{Clicked, line_at};
 use crate::evolution::RankedRecord;
 
 /// All individuals of a generation, best first.
@@ -291,7 +291,7 @@ impl View for Population {
     }
 
     fn hints(&self) -> &'static [Action] {
-        &[Action::Down, Action::Sort, Action::Reverse]
+        &[Action::Down, Action::Open, Action::Sort, Action::Reverse]
     }
 
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
@@ -310,16 +310,14 @@ impl View for Population {
         Some(Vec::new())
     }
 
-    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> bool {
+    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> Clicked {
         let line = line_at(at, area, 1);
         let visible = self.visible(desk, area);
         let clicked = line.and_then(|line| visible.get(line)).map(|one| one.id);
-        let selected = desk.selected().map(|individual| individual.id);
-        let Some(id) = clicked.filter(|id| Some(*id) != selected) else {
-            return false;
+        let Some(selected) = desk.selected().map(|individual| individual.id) else {
+            return Clicked::Nothing;
         };
-        desk.chosen = Chosen::Id(id);
-        true
+        Clicked::on(clicked, selected, |id| desk.chosen = Chosen::Id(id))
     }
 
     fn csv(&self, desk: &Desk) -> Option<String> {

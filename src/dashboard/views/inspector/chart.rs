@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::values::largest;
 use crate::dashboard::desk::Desk;
-use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put, width};
+use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put, shortened, width};
 use crate::dashboard::views::lines::number;
 use crate::lab::specimen::{Profile, Quantity};
 use crate::worlds::scene::Scale;
@@ -270,10 +270,13 @@ fn sheet(
     let [low, high] = range(profile);
     let curve = which.and_then(|index| profile.curves.get(index));
     let title = match (which, curve) {
-        (Some(index), Some(curve)) => format!("{} {}", sign(index), curve.label),
+        (Some(index), Some(curve)) => {
+            let room = usize::from(area.width.saturating_sub(2));
+            let label = shortened(&curve.label, room, look.signs);
+            format!("{} {label}", sign(index))
+        }
         _ => String::from("the largest"),
     };
-    let title = fitted(&title, usize::from(area.width), look.signs);
     put(buffer, area, (0, 0), &title, look.style(Paint::Title));
     let columns = profile.across.len().max(1);
     let values = profile.curves.first().map_or(0, |curve| curve.values.len());

@@ -15,7 +15,7 @@ use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, put, width};
-use crate::dashboard::mouse::line_at;
+use crate::dashboard::mouse::{Clicked, line_at};
 use crate::dashboard::stage::Subject;
 use crate::hierarchy::{draw, to_dot};
 use crate::lab::specimen::{Lineage, Profile, lineage};
@@ -38,7 +38,6 @@ const ROOMY: (u16, u16) = (110, 32);
 /// ```
 #[derive(Default)]
 pub(super) struct Inspector {
-    node: usize,
     page: Page,
     scroll: usize,
     shelf: Shelf,
@@ -90,10 +89,11 @@ impl Inspector {
         let drawn = draw(hierarchy.tree(), desk.catalogue(), look.signs.tree);
         let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 1;
         let visits = desk.stage.rollout().map(|rollout| &rollout.status().visits);
+        let selected = desk.node_in(hierarchy.tree());
         let values = drawn.into_iter().zip(hierarchy.values()).enumerate();
         values
             .map(|(node, (line, values))| {
-                let here = node == self.node;
+                let here = node == selected;
                 let (sign, paint) = match (here, values.is_some()) {
                     (true, _) => (look.signs.pointer, Paint::Selected),
                     (false, true) => (" ", Paint::Title),
@@ -158,7 +158,7 @@ impl Inspector {
         }
         let widest = lines.iter().map(Line::width).max().unwrap_or(0);
         let [left, _] = columns(area, count(widest).min(area.width / 2));
-        let skipped = self.node.saturating_sub(usize::from(left.height / 2));
+        let skipped = desk.node.saturating_sub(usize::from(left.height / 2));
         (left, skipped.min(last_start(lines.len(), left.height)))
     }
 
@@ -265,10 +265,10 @@ impl View for Inspector {
             Action::Down if scrolls => self.scroll += 1,
             Action::PageUp => self.scroll = self.scroll.saturating_sub(10),
             Action::PageDown => self.scroll += 10,
-            Action::Up => self.node = self.node.saturating_sub(1),
-            Action::Down => self.node = (self.node + 1).min(nodes - 1),
-            Action::Top => self.node = 0,
-            Action::Bottom => self.node = nodes - 1,
+            Action::Up => desk.node = desk.node.min(nodes - 1).saturating_sub(1),
+            Action::Down => desk.node = (desk.node + 1).min(nodes - 1),
+            Action::Top => desk.node = 0,
+            Action::Bottom => desk.node = nodes - 1,
             Action::Mode => self.shelf.next_quantity(),
             Action::Left => self.shelf.turn(-1),
             Action::Right => self.shelf.turn(1),
@@ -277,13 +277,14 @@ impl View for Inspector {
         Some(Vec::new())
     }
 
-    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> bool {
-        let (tree, skipped) = self.place_of_tree(desk, area);
-        let nodes = desk.stage.tree().map_or(0, |tree| tree.nodes().len());
-        let line = line_at(at, tree, 0).map(|line| line + skipped);
-        let clicked = line.filter(|&node| node < nodes && node != self.node);
-        self.node = clicked.unwrap_or(self.node);
-        clicked.is_some()
+    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> Clicked {
+        let (place, skipped) = self.place_of_tree(desk, area);
+        let Some(tree) = desk.stage.tree() else {
+            return Clicked::Nothing;
+        };
+        let node = line_at(at, place, 0).map(|line| line + skipped);
+        let node = node.filter(|node| *node < tree.nodes().len());
+        Clicked::on(node, desk.node_in(tree), |node| desk.node = node)
     }
 
     fn prepare(&mut self, desk: &Desk) {
@@ -291,19 +292,18 @@ impl View for Inspector {
             self.known = None;
             return;
         };
-        let nodes = specimen.individual.hierarchy.tree().nodes().len();
-        self.node = self.node.min(nodes.saturating_sub(1));
+        let node = desk.node_in(specimen.individual.hierarchy.tree());
         let lines = self.page_lines(desk, self.page, desk.size.0.into()).len();
         self.scroll = self.scroll.min(last_start(lines, 3));
         let same = self.known.as_ref().filter(|known| known.subject == subject);
-        if same.is_some_and(|known| known.node == self.node) {
+        if same.is_some_and(|known| known.node == node) {
             return;
         }
-        let profiles = desk.bench.profiles(specimen, self.node);
+        let profiles = desk.bench.profiles(specimen, node);
         self.shelf.fit(&profiles);
         if let Some(known) = self.known.as_mut().filter(|known| known.subject == subject) {
             known.profiles = profiles;
-            known.node = self.node;
+            known.node = node;
             return;
         }
         let records = desk.model().generations();
@@ -312,7 +312,7 @@ impl View for Inspector {
             .take_while(|record| record.generation <= subject.generation);
         self.known = Some(Known {
             subject,
-            node: self.node,
+            node,
             profiles,
             selection: desk.bench.selection(specimen),
             lineage: lineage(until.map(|record| &**record), subject.id),

@@ -9,7 +9,7 @@ use ratatui::text::Line;
 use super::chart;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, put};
+use crate::dashboard::look::{Paint, fitted, put, shortened};
 use crate::dashboard::views::lines::{Pen, decimals, draw_lines, fixed};
 use crate::lab::specimen::{Profile, Quantity};
 use crate::worlds::scene::Scale;
@@ -137,7 +137,7 @@ fn table(desk: &Desk, profile: &Profile, labels: &[String], columns: usize) -> V
     let label = columns.saturating_sub(each * curves.len()).clamp(8, 18);
     let mut head = Pen::new(look).to(label);
     for curve in curves {
-        let name = fitted(&curve.label, each - 1, look.signs);
+        let name = shortened(&curve.label, each - 1, look.signs);
         head = head.right(&name, each, Paint::Title);
     }
     let digits = decimals(curves.iter().flat_map(|curve| curve.values.iter().copied()));

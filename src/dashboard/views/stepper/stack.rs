@@ -3,7 +3,7 @@
 use ratatui::text::Line;
 
 use super::{Detail, Shown};
-use crate::dashboard::look::Paint;
+use crate::dashboard::look::{Paint, shortened, width};
 use crate::dashboard::views::lines::{Pen, decimals, fixed, number, percent};
 use crate::learning::{ActionChoice, Choice, Explanation, Level, Rule};
 
@@ -47,10 +47,10 @@ impl Widths {
 ///
 /// ```text
 ///                        C~+V       V      C~       C     p
-///  Root  V -3.612  chooses by softmax, τ 0.812
+///  Root  V -3.612  τ 0.812  chooses by softmax
 ///  ▸ FindBattery       -3.612  -3.212  -0.400  -0.400  88 %  ━━━━━━━━
 ///    Wander            -5.401  -0.300  -5.101  -5.101  12 %  ━
-///   FindBattery  V -3.212  chooses by softmax, τ 0.900
+///   FindBattery  V -3.212  τ 0.900  invoked, chooses by softmax
 ///   ▸ Avoid            ...
 ///    Avoid  acts
 ///    ▸ (600,600)                -0.300                  74 %  ━━━━━━━
@@ -60,7 +60,7 @@ pub(super) fn lines(shown: &Shown<'_>, columns: usize, detail: Detail) -> Vec<Li
     let widths = Widths::of(columns, explanation);
     let mut lines = vec![head(shown, widths)];
     for (depth, level) in explanation.levels.iter().enumerate() {
-        lines.push(title(shown, widths, depth, level));
+        lines.push(title(shown, widths, columns, depth, level));
         if level.chose || detail.standing {
             let choices = level.choices.iter();
             lines.extend(choices.map(|choice| child(shown, widths, depth, level, choice)));
@@ -79,35 +79,53 @@ fn head(shown: &Shown<'_>, widths: Widths) -> Line<'static> {
     pen.right("p", widths.percent, Paint::Dim).line()
 }
 
-fn title(shown: &Shown<'_>, widths: Widths, depth: usize, level: &Level) -> Line<'static> {
+fn title(
+    shown: &Shown<'_>,
+    widths: Widths,
+    columns: usize,
+    depth: usize,
+    level: &Level,
+) -> Line<'static> {
     let signs = shown.look.signs;
-    let tau = format!("{} {}", signs.tau, number(level.temperature));
-    let (what, paint) = match (level.chose, level.rule) {
-        (false, _) => {
-            let active = shown.name(level.active);
-            (format!("goes on with {active}, {tau}"), Paint::Dim)
-        }
-        (true, rule) => (format!("{}, {tau}", how(shown, rule)), Paint::Text),
-    };
     let value = level.value().map_or(String::new(), |value| {
         format!("  V {}", fixed(value, widths.digits))
     });
-    Pen::new(shown.look)
+    let paint = match level.chose {
+        true => Paint::Text,
+        false => Paint::Dim,
+    };
+    let tau = format!("  {} {}  ", signs.tau, number(level.temperature));
+    let pen = Pen::new(shown.look)
         .to(depth)
         .text(shown.name(level.node), Paint::Title)
         .text(value, Paint::Title)
-        .text(if level.invoked { "  invoked, " } else { "  " }, paint)
-        .text(what, paint)
-        .line()
+        .text(tau, paint);
+    let [long, short] = how(shown, level);
+    let room = columns.saturating_sub(pen.column());
+    let how = if width(&long) <= room { long } else { short };
+    pen.text(how, paint).line()
 }
 
-/// How a rule chooses, in words.
-fn how(shown: &Shown<'_>, rule: Rule) -> String {
-    match rule {
-        Rule::OnlyChoice => String::from("has one choice"),
-        Rule::Uniform => String::from("chooses at random"),
-        Rule::Softmax => String::from("chooses by softmax"),
-        Rule::EpsilonGreedy => format!("chooses {}-greedily", shown.look.signs.epsilon),
+/// How a node chose, in words and in short.
+fn how(shown: &Shown<'_>, level: &Level) -> [String; 2] {
+    let epsilon = shown.look.signs.epsilon;
+    let [long, short] = match (level.chose, level.rule) {
+        (false, _) => {
+            let active = shown.name(level.active);
+            let short = shortened(active, 9, shown.look.signs);
+            return [format!("goes on with {active}"), format!("on with {short}")];
+        }
+        (true, Rule::OnlyChoice) => ["has one choice", "one choice"].map(String::from),
+        (true, Rule::Uniform) => ["chooses at random", "at random"].map(String::from),
+        (true, Rule::Softmax) => ["chooses by softmax", "softmax"].map(String::from),
+        (true, Rule::EpsilonGreedy) => [
+            format!("chooses {epsilon}-greedily"),
+            format!("{epsilon}-greedy"),
+        ],
+    };
+    match level.invoked {
+        true => [format!("invoked, {long}"), format!("new, {short}")],
+        false => [long, short],
     }
 }
 
@@ -157,7 +175,7 @@ fn named<'s>(
         .to(depth)
         .text(format!("{sign} "), paint);
     let room = widths.name.saturating_sub(pen.column());
-    let name = crate::dashboard::look::fitted(name, room, shown.look.signs);
+    let name = shortened(name, room, shown.look.signs);
     pen.text(name, paint).to(widths.name)
 }
 

@@ -1,0 +1,161 @@
+//! The task hierarchy.
+
+mod story;
+mod table;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use super::lines::{last_start, mark_more};
+use super::{View, nothing_yet};
+use crate::dashboard::desk::Desk;
+use crate::dashboard::input::Effect;
+use crate::dashboard::keys::Action;
+use crate::dashboard::look::{Paint, fitted, one_line, put};
+use crate::dashboard::mouse::{Clicked, line_at};
+use crate::hierarchy::{Tree, to_dot};
+use table::Table;
+
+/// The task hierarchy of the individual that is looked at, its active path lit; below it,
+/// what the selected subtask is, and how the individual came to be and did.
+///
+/// ```text
+///  ╭ Hierarchy  id 362, gen 26 · rank 1 ─────────────────╮
+///  │   subtask              types     T  invoked         │
+///  │ •Root                  1234  0.050       12         │   • active in the rollout
+///  │▸ ├─ FindBattery        1     0.050       12         │   ▸ selected
+///  │  │  └─ Avoid           1234            1201         │
+///  │ •└─ ApproachBattery     2               310         │
+///  │                                                     │
+///  │  FindBattery: find a battery                        │
+///  │  composite, active in 1, its goal 2 3 4 done        │
+///  │  made of 340 by putting ...                         │
+///  ╰─────────────────────────────────────────────────────╯
+/// ```
+pub(super) struct Hierarchy;
+
+impl View for Hierarchy {
+    fn caption(&self, desk: &Desk) -> String {
+        let looked_at = desk.looked_at();
+        looked_at.map_or(String::new(), |(generation, individual)| {
+            let separator = desk.look.signs.separator;
+            let (id, rank) = (individual.id, individual.rank);
+            format!("id {id}, gen {generation} {separator} rank {rank}")
+        })
+    }
+
+    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+        let Some((_, individual)) = desk.looked_at() else {
+            return nothing_yet(desk, area, buffer);
+        };
+        let look = &desk.look;
+        let Some(tree) = desk.tree(individual) else {
+            let text = one_line(&individual.tree);
+            let text = fitted(&text, usize::from(area.width), look.signs);
+            put(buffer, area, (1, 0), &text, look.style(Paint::Bad));
+            return;
+        };
+        let nodes = tree.nodes().len();
+        let table = Table::of(desk, individual, &tree, area.width);
+        table.draw_head(desk, area, buffer);
+        let (place, skipped) = place_of_tree(desk, &tree, area);
+        for (row, node) in (skipped..nodes).take(place.height.into()).enumerate() {
+            table.draw_node(desk, &tree, node, row as u16, place, buffer);
+        }
+        let below = nodes.saturating_sub(skipped + usize::from(place.height));
+        mark_more(look, [skipped, below], place, buffer);
+        let used = (nodes as u16).saturating_add(2).min(area.height);
+        let rest = Rect {
+            y: area.y + used,
+            height: area.height - used,
+            ..area
+        };
+        story::draw(desk, &tree, individual, rest, buffer);
+    }
+
+    fn hints(&self) -> &'static [Action] {
+        &[
+            Action::Down,
+            Action::Open,
+            Action::Halt,
+            Action::StepRollout,
+            Action::Best,
+        ]
+    }
+
+    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
+        let tree = desk.looked_at_tree()?;
+        let last = tree.nodes().len().saturating_sub(1);
+        let page = usize::from(desk.size.1 / 2);
+        let here = desk.node_in(&tree);
+        let there = match action {
+            Action::Up => here.saturating_sub(1),
+            Action::Down => here + 1,
+            Action::PageUp => here.saturating_sub(page),
+            Action::PageDown => here + page,
+            Action::Top => 0,
+            Action::Bottom => last,
+            _ => return None,
+        };
+        desk.node = there.min(last);
+        Some(Vec::new())
+    }
+
+    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> Clicked {
+        let Some(tree) = desk.looked_at_tree() else {
+            return Clicked::Nothing;
+        };
+        let (place, skipped) = place_of_tree(desk, &tree, area);
+        let node = line_at(at, place, 0).map(|line| line + skipped);
+        let node = node.filter(|node| *node < tree.nodes().len());
+        Clicked::on(node, desk.node_in(&tree), |node| desk.node = node)
+    }
+
+    fn csv(&self, desk: &Desk) -> Option<String> {
+        let (_, individual) = desk.looked_at()?;
+        let tree = desk.tree(individual)?;
+        let table = Table::of(desk, individual, &tree, u16::MAX);
+        let mut csv = String::from("node,parent,subtask,state_types,temperature,invoked\n");
+        for (index, node) in tree.nodes().iter().enumerate() {
+            let parent = node.parent;
+            let parent = parent.map_or(String::new(), |parent| parent.to_string());
+            let subtask = desk.catalogue().subtask(node.subtask);
+            let types = subtask.active.to_string().replace(',', " ");
+            let [temperature, visits] = table.numbers(index);
+            csv.push_str(&format!(
+                "{index},{parent},{},{types},{temperature},{visits}\n",
+                subtask.name
+            ));
+        }
+        Some(csv)
+    }
+
+    fn dot(&self, desk: &Desk) -> Option<String> {
+        Some(to_dot(&desk.looked_at_tree()?, desk.catalogue()))
+    }
+
+    fn lesson(&self) -> &'static str {
+        "The task hierarchy of an individual, its genome. Root and the other composite subtasks\n\
+         (bold) choose among their children until they terminate; primitive subtasks act. Lit is\n\
+         the path from root to action in the rollout. State types: in which a subtask can be\n\
+         active (Thesis Tables 4.2, 4.3). T: temperature of a composite's softmax; it falls\n\
+         whenever the subtask terminates, and choices become greedy. invoked: in this rollout."
+    }
+}
+
+/// The area of the tree below the head, and how many of its lines are above it: the selected
+/// one is always on the screen.
+fn place_of_tree(desk: &Desk, tree: &Tree, area: Rect) -> (Rect, usize) {
+    let place = Rect {
+        y: area.y + area.height.min(1),
+        height: area.height.saturating_sub(1),
+        ..area
+    };
+    let skipped = desk
+        .node_in(tree)
+        .saturating_sub(usize::from(place.height / 2));
+    (
+        place,
+        skipped.min(last_start(tree.nodes().len(), place.height)),
+    )
+}

@@ -1,0 +1,127 @@
+//! Little room: at 80x24, and in the panels of 120x40, nothing that a person needs is cut; what
+//! is cut says so.
+
+use maxq_lab::hierarchy::Glyphs::Unicode;
+use maxq_lab::lab::specimen::Start;
+
+use super::frames::{MIDDLE, SMALL};
+use super::recorded::{cells, foraging};
+use super::textbook::learned;
+
+/// The text of a panel, its lines joined by blanks.
+fn panel(text: &str, title: &str) -> String {
+    let lines: Vec<Vec<char>> = text.lines().map(|line| line.chars().collect()).collect();
+    let title: Vec<char> = format!(" {title} ").chars().collect();
+    let found = lines.iter().enumerate().find_map(|(row, line)| {
+        let windows = line.windows(title.len());
+        Some((row, windows.into_iter().position(|part| part == title)?))
+    });
+    let (row, column) = found.unwrap_or_else(|| panic!("{title:?} in\n{text}"));
+    let left = (0..column).rev().find(|&at| lines[row][at] == '╭').unwrap();
+    let right = (column..).find(|&at| lines[row][at] == '╮').unwrap();
+    let inside = lines[row + 1..].iter().take_while(|line| line[left] == '│');
+    let inside = inside.map(|line| line[left + 1..right].iter().collect::<String>());
+    let joined = inside.collect::<Vec<_>>().join(" ");
+    joined.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The longest state names, in the overview's arena too.
+#[test]
+fn the_state_is_named_in_full() {
+    for (case, state) in [
+        (
+            "from R to B at 0,3",
+            "from R to B: 1 passenger waits, taxi elsewhere",
+        ),
+        (
+            "in taxi to B at 0,3",
+            "in taxi to B: 3 passenger in taxi, not at destination",
+        ),
+    ] {
+        let start = Start::read(case, learned().bench).unwrap();
+        let screen = learned().screen_from(Some(start), "dark", Unicode, SMALL);
+        let arena = panel(&screen.text(), "Arena");
+        assert!(arena.contains(state), "{state}: {arena}");
+    }
+    let mut screen = foraging().screen("dark", Unicode, SMALL);
+    let names = &foraging().bench.catalogue().state_types;
+    for _ in 0..40 {
+        screen.press("space . space");
+        screen.wait(0.5);
+        let stage = &screen.0.app().desk().stage;
+        let rollout = stage.rollout().unwrap();
+        let number = rollout.snapshot().state_type.number();
+        if rollout.status().ended.is_none() {
+            let name = format!("{number} {}", names[number - 1].description);
+            let arena = panel(&screen.text(), "Arena");
+            assert!(arena.contains(&name), "{name}: {arena}");
+        }
+    }
+}
+
+/// A number that is cut is another number.
+#[test]
+fn lengths_of_trials_are_whole_or_left_out() {
+    for size in [SMALL, (60, 24), (40, 12), MIDDLE] {
+        let mut screen = learned().screen("dark", Unicode, size);
+        for _ in 0..30 {
+            screen.wait(1.0);
+            let arena = panel(&screen.text(), "Arena");
+            let stage = &screen.0.app().desk().stage;
+            let history = stage.rollout().unwrap().status().history.clone();
+            let latest: Vec<_> = history
+                .iter()
+                .rev()
+                .map(|trial| trial.steps.to_string())
+                .collect();
+            if let Some((_, before)) = arena.split_once("before ") {
+                let shown: Vec<_> = before.split(' ').map(|n| n.trim_end_matches('!')).collect();
+                assert_eq!(shown[..], latest[..shown.len()], "{arena}");
+            }
+        }
+    }
+}
+
+#[test]
+fn state_types_are_named_in_full_in_the_policy_panel() {
+    for run in [foraging(), learned(), &cells("cliff")] {
+        let policy = panel(&run.screen("dark", Unicode, MIDDLE).text(), "Policy");
+        for (index, info) in run.bench.catalogue().state_types.iter().enumerate() {
+            let title = format!("{} {}", index + 1, info.description);
+            assert!(policy.contains(&title), "{title}: {policy}");
+        }
+    }
+}
+
+/// Names of subtasks are shortened so that they can be told apart; temperature and rule of
+/// every node of the call stack are there.
+#[test]
+fn the_stepper_says_everything_in_little_room() {
+    let start = Start::read("in taxi to B at 2,2", learned().bench).unwrap();
+    let mut screen = learned().screen_from(Some(start), "dark", Unicode, SMALL);
+    screen.press("t . .");
+    let text = screen.text();
+    for (level, rule) in [
+        ("Root  V", "on with Put"),
+        ("Put  V", "NavToDes"),
+        ("NavigateToDestination  V", "greedy"),
+    ] {
+        let line = text.lines().find(|line| line.contains(level));
+        let line = line.unwrap_or_else(|| panic!("{level} in\n{text}"));
+        assert!(
+            line.contains("τ 0.050") && line.contains(rule),
+            "{rule}: {line}"
+        );
+        assert!(!line.contains('…'), "{line}");
+    }
+}
+
+/// What does not fit ends with a sign that says so.
+#[test]
+fn what_is_cut_says_so() {
+    let mut screen = foraging().screen("dark", Unicode, (44, 14));
+    screen.press("t . . .");
+    let text = screen.text();
+    let cut = text.lines().filter(|line| line.contains("…│")).count();
+    assert!(cut > 0, "{text}");
+}
