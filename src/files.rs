@@ -154,9 +154,20 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     builder.prefix(WRITING);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut temporary = builder.tempfile_in(folder_of(path))?;
-    temporary.write_all(bytes)?;
+    let temporary = builder.tempfile_in(folder_of(path));
+    let mut temporary = temporary.map_err(without_path)?;
+    temporary.write_all(bytes).map_err(without_path)?;
     Ok(temporary)
+}
+
+/// What the operating system said, without the name of a temporary file, which tells nobody
+/// anything.
+#[must_use]
+pub fn without_path(error: io::Error) -> io::Error {
+    match error.to_string().rsplit_once(" at path ") {
+        Some((said, _)) if error.get_ref().is_some() => io::Error::new(error.kind(), said),
+        _ => error,
+    }
 }
 
 /// Makes renames and new files in `folder` durable.

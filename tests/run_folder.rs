@@ -218,7 +218,7 @@ fn a_second_process_is_refused_and_disturbs_nothing() {
     assert!(said.contains("another process works on this run"), "{said}");
     let said = refused(&mut run(&first.folder));
     assert!(
-        said.contains("exists already; allowed: another --out, --force"),
+        said.contains("exists already and holds another run"),
         "{said}"
     );
     assert!(first.is_alive());
@@ -246,15 +246,21 @@ fn an_existing_run_is_replaced_only_by_force() {
     );
     let before = Record::of(&folder);
     let said = refused(&mut run(&folder));
-    assert!(
-        said.contains("exists already; allowed: another --out, --force"),
-        "{said}"
-    );
+    for part in [
+        "exists already and holds another run, with seed 5 in the place of 1",
+        "allowed: another --out, or --force",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    assert!(!said.contains("resume"), "{said}");
     Record::of(&folder).assert_same(&before, "after a refusal");
 
     assert!(output(run(&folder).arg("--force")).status.success());
     let expected = common::record(&short(&[]), 1, &threads(2));
     Record::of(&folder).assert_same(&expected, "after --force");
+    let said = refused(&mut run(&folder));
+    assert!(said.contains("exists already and holds this run"), "{said}");
+    assert!(said.contains("'maxq-lab resume"), "{said}");
     // The old run had fewer generations; nothing of either is left beside the new one.
     assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 1);
 }
@@ -267,7 +273,11 @@ fn force_deletes_nothing_that_is_no_run() {
     fs::write(folder.join("chapter-1.tex"), "years of work").unwrap();
     for force in [&["--force"][..], &[]] {
         let said = refused(run(&folder).args(force));
-        assert!(said.contains("thesis: "), "{said}");
+        assert!(
+            said.contains("thesis: exists already and is no run folder"),
+            "{said}"
+        );
+        assert!(!said.contains("--force"), "{said}");
         assert_eq!(contents(&folder), [PathBuf::from("chapter-1.tex")]);
     }
     let file = folder.join("chapter-1.tex");
@@ -289,12 +299,38 @@ fn an_empty_folder_is_no_obstacle_and_parents_are_made() {
     assert!(empty.join("summary.json").is_file() && deep.join("summary.json").is_file());
 }
 
+#[test]
+fn a_run_that_is_over_keeps_the_time_that_it_took() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("run");
+    run_in(&folder, &short(&[]), 1, &threads(2));
+    let summary = fs::read(folder.join("summary.json")).unwrap();
+    let moved = parent.path().join("moved");
+    fs::rename(&folder, &moved).unwrap();
+    resume(&moved, None, &threads(1)).unwrap().join().unwrap();
+    assert_eq!(fs::read(moved.join("summary.json")).unwrap(), summary);
+    // What is not true of the run any more is replaced.
+    let longer = resume(&moved, Some(50), &threads(1))
+        .unwrap()
+        .join()
+        .unwrap();
+    assert!(longer.generations > 6);
+    assert_eq!(
+        json(&moved.join("summary.json"))["generations"],
+        longer.generations
+    );
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_place_where_nothing_can_be_written_is_refused() {
     // Refuses new folders whoever asks, unlike a folder without write permission.
     let said = refused(&mut run(Path::new("/proc/maxq-lab-run")));
     assert!(said.starts_with("error: /proc"), "{said}");
+    assert!(
+        !said.contains(".new-run-"),
+        "the name of a temporary folder: {said}"
+    );
     let said = refused(&mut run(Path::new("/proc/maxq-lab/run")));
     assert!(said.starts_with("error: /proc/maxq-lab"), "{said}");
 }

@@ -36,6 +36,12 @@ pub(super) enum Format {
     Json,
 }
 
+/// A number of things, in words: one without the plural's s.
+pub(super) fn counted(number: u64, thing: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {thing}{plural}")
+}
+
 /// Writes text to standard output, its control characters made visible.
 pub(super) fn text(text: &str) -> Result<(), Failure> {
     raw(visible(text).as_bytes())

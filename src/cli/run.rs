@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use super::live::{self, OnHangup};
-use super::output::{Done, Format};
+use super::output::{Done, Failure, Format, counted};
 use super::show::Show;
 use super::signals::Caught;
 use super::source::Source;
 use crate::hierarchy::{Glyphs, draw};
-use crate::lab::{Keep, Outcome, RunOptions, start};
+use crate::lab::{Keep, Outcome, RunOptions, departures, start};
+use crate::scenario::{Scenario, Selection};
 
 /// Evolve hierarchies for a scenario.
 ///
@@ -124,10 +125,7 @@ pub(super) fn main(args: Args) -> Done {
 }
 
 /// A result, for people.
-pub(super) fn describe(
-    outcome: &Outcome,
-    scenario: &crate::scenario::Scenario,
-) -> Result<String, super::output::Failure> {
+pub(super) fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
     let Outcome {
         generations,
         control_steps,
@@ -141,21 +139,25 @@ pub(super) fn describe(
     };
     let mut lines = vec![
         format!(
-            "{}, seed {}: {ending} {generations} generations",
-            outcome.scenario, outcome.seed
+            "{}, seed {}: {ending} {}",
+            outcome.scenario,
+            outcome.seed,
+            counted(*generations, "generation")
         ),
         format!(
             "{control_steps} control steps in all, {wall_seconds:.2} s now, in {}",
             outcome.run_dir
         ),
     ];
+    lines.extend(changed(scenario));
     if let Some(best) = &outcome.best {
         lines.push(format!(
-            "best individual {}: {:.1} time steps a trial, {} composite and {} primitive subtasks",
+            "{} {}: {:.1} time steps a trial, {} composite and {}",
+            first(scenario.evolution.selection),
             best.id,
             best.fitness,
             best.composites,
-            best.primitives.len()
+            counted(best.primitives.len() as u64, "primitive subtask")
         ));
         lines.push(String::new());
         lines.extend(super::tree::with_tree(
@@ -171,9 +173,43 @@ pub(super) fn describe(
                 primitives.join(", ")
             ));
         }
-        lines.push(String::from(
-            "\nThe best of many is also the luckiest; 'maxq-lab evaluate' tells how good its structure is.",
-        ));
+        lines.push(format!("\n{}", caution(scenario.evolution.selection)));
     }
     Ok(lines.join("\n") + "\n")
+}
+
+/// Settings that are told one by one.
+const TOLD: usize = 6;
+
+/// What sets a scenario apart from the embedded one whose name it has: a result must not
+/// pass for that one's.
+fn changed(scenario: &Scenario) -> Option<String> {
+    let all = departures(scenario);
+    let told: Vec<_> = all.iter().take(TOLD).map(ToString::to_string).collect();
+    let more = match all.len().saturating_sub(TOLD) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!told.is_empty()).then(|| format!("changed: {}{more}", told.join(", ")))
+}
+
+/// What the individual of rank 1 is.
+fn first(selection: Selection) -> &'static str {
+    match selection {
+        Selection::Fitness => "best individual",
+        Selection::Random => "individual that chance ranked first,",
+    }
+}
+
+/// What to bear in mind about it.
+fn caution(selection: Selection) -> &'static str {
+    match selection {
+        Selection::Fitness => {
+            "The best of many is also the luckiest; 'maxq-lab evaluate' tells how good its \
+             structure is."
+        }
+        Selection::Random => {
+            "Chance took the place of fitness here: no individual was selected for being good."
+        }
+    }
 }

@@ -8,11 +8,11 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use tempfile::TempDir;
-use thiserror::Error;
 
+use super::folder_error::{FolderError, Occupied};
 use super::manifest::{MANIFEST_FORMAT, Manifest};
 use crate::files::{
-    ReadError, WRITING, clean, read_text, stated_format, sync_folder, write_atomically,
+    WRITING, clean, read_text, stated_format, sync_folder, without_path, write_atomically,
 };
 use crate::scenario::MAX_FILE_BYTES;
 
@@ -22,64 +22,6 @@ const NEW_RUN: &str = ".new-run-";
 /// Making a run folder takes milliseconds: one that was begun so long ago was left by a
 /// process that died.
 const ABANDONED: Duration = Duration::from_secs(3600);
-
-/// Why a run folder cannot be used.
-#[derive(Debug, Error)]
-pub enum FolderError {
-    /// There is something at the place of a new run folder.
-    #[error(
-        "{path}: exists already; allowed: another --out, --force to replace a run, or 'maxq-lab \
-         resume {path}' to go on with it"
-    )]
-    Exists {
-        /// The place.
-        path: String,
-    },
-    /// `--force` would delete something that is no run.
-    #[error(
-        "{path}: holds no run.json, so it is not a run folder; --force replaces run folders only"
-    )]
-    NotReplaceable {
-        /// The place.
-        path: String,
-    },
-    /// It is not a run folder.
-    #[error("{path}: holds no run.json; allowed: a run folder")]
-    NotARun {
-        /// The folder.
-        path: String,
-    },
-    /// Another process works on the run.
-    #[error("{path}: another process works on this run; wait for it, or stop it")]
-    InUse {
-        /// The folder.
-        path: String,
-    },
-    /// The operating system refused.
-    #[error("{path}: {source}")]
-    Io {
-        /// The file or folder.
-        path: String,
-        /// Why.
-        source: io::Error,
-    },
-    /// `run.json` cannot be read.
-    #[error("{path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// Why.
-        source: ReadError,
-    },
-    /// `run.json` is not what it should be.
-    #[error("{path}: {message}")]
-    Manifest {
-        /// The file.
-        path: String,
-        /// What is wrong, and where.
-        message: String,
-    },
-}
 
 /// Which generations' checkpoints are kept for time travel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -163,7 +105,7 @@ impl RunFolder {
         };
         fs::create_dir_all(parent).map_err(|error| io_error(parent, error))?;
         clean(parent, NEW_RUN, ABANDONED).map_err(|error| io_error(parent, error))?;
-        let replaced = Self::make_room(path, parent, force)?;
+        let replaced = Self::make_room(path, parent, manifest, force)?;
         let fresh = temporary(parent)?;
         let folder = Self {
             path: fresh.path().to_owned(),
@@ -175,9 +117,7 @@ impl RunFolder {
         drop(replaced);
         fs::rename(fresh.path(), path).map_err(|error| match error.kind() {
             io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::NotADirectory => {
-                FolderError::Exists {
-                    path: path.display().to_string(),
-                }
+                occupied(path, manifest)
             }
             _ => io_error(path, error),
         })?;
@@ -192,21 +132,22 @@ impl RunFolder {
 
     /// Clears the place of a new run folder; an empty folder is no obstacle. Returns the
     /// lock of the run that was replaced.
-    fn make_room(path: &Path, parent: &Path, force: bool) -> Result<Option<Self>, FolderError> {
-        let shown = path.display().to_string();
+    fn make_room(
+        path: &Path,
+        parent: &Path,
+        manifest: &Manifest,
+        force: bool,
+    ) -> Result<Option<Self>, FolderError> {
         let mut entries = match fs::read_dir(path) {
             Ok(entries) => entries,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(_) => return Err(FolderError::Exists { path: shown }),
+            Err(_) => return Err(occupied(path, manifest)),
         };
         if entries.next().is_none() {
             return Ok(None);
         }
-        if !force {
-            return Err(FolderError::Exists { path: shown });
-        }
-        if !path.join("run.json").is_file() {
-            return Err(FolderError::NotReplaceable { path: shown });
+        if !force || !path.join("run.json").is_file() {
+            return Err(occupied(path, manifest));
         }
         let old = Self::open(path)?;
         // It goes in one step: a process killed here leaves no half of a run in its place.
@@ -335,7 +276,7 @@ fn temporary(parent: &Path) -> Result<TempDir, FolderError> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
     let made = builder.tempdir_in(parent);
-    made.map_err(|error| io_error(parent, error))
+    made.map_err(|error| io_error(parent, without_path(error)))
 }
 
 fn lock(folder: &Path) -> Result<Lock, FolderError> {
@@ -352,6 +293,19 @@ fn lock(folder: &Path) -> Result<Lock, FolderError> {
             path: folder.display().to_string(),
         }),
         Err(TryLockError::Error(error)) => Err(io_error(&path, error)),
+    }
+}
+
+/// There is something where the run of `wanted` was to be.
+fn occupied(path: &Path, wanted: &Manifest) -> FolderError {
+    let by = match RunFolder::read_manifest(path) {
+        Ok(found) => Occupied::by(&found, wanted),
+        Err(FolderError::NotARun { .. }) => Occupied::NoRun,
+        Err(_) => Occupied::Unreadable,
+    };
+    FolderError::Exists {
+        path: path.display().to_string(),
+        by,
     }
 }
 

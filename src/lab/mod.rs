@@ -4,9 +4,11 @@
 mod checkpoint;
 mod checkpoint_error;
 mod controls;
+mod difference;
 mod evaluate;
 mod event;
 mod folder;
+mod folder_error;
 mod follower;
 mod learn;
 mod learner;
@@ -28,9 +30,11 @@ mod worlds;
 pub use checkpoint::{Checkpoint, LogPosition};
 pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
+pub use difference::{Difference, departures, differences};
 pub use evaluate::{Evaluation, Protocol, Repeat, Scored, evaluate};
 pub use event::{Ending, Event};
-pub use folder::{FolderError, Keep, RunFolder};
+pub use folder::{Keep, RunFolder};
+pub use folder_error::{FolderError, Occupied};
 pub use learn::{
     Algorithm, Course, GivenPolicy, LearnCheck, LearnError, LearnProtocol, Learned, learn,
 };

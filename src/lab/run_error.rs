@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::checkpoint_error::CheckpointError;
-use super::folder::FolderError;
+use super::folder_error::FolderError;
 use super::log::LogError;
 use super::recorder::RecordError;
 use super::worlds::SetupError;

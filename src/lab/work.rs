@@ -15,9 +15,12 @@ use super::pulse::Pulse;
 use super::recorder::{Message, QUEUE_CAPACITY, Recorder};
 use super::run_error::RunError;
 use crate::evolution::{Evolution, Experiment, State, Workers};
-use crate::files::write_atomically;
+use crate::files::{read_text, write_atomically};
 use crate::learning::Stopped;
 use crate::worlds::World;
+
+/// Largest `summary.json` that is read, in bytes.
+const MAX_SUMMARY_BYTES: u64 = 1 << 20;
 
 /// What the evolution thread owns.
 pub(super) struct Work<W: World> {
@@ -86,7 +89,8 @@ impl<W: World> Work<W> {
             wall_seconds: started.elapsed().as_secs_f64(),
             run_dir: folder.clone(),
         };
-        if progress.over {
+        // A run that was over before keeps the time that it took.
+        if progress.over && !self.is_summed_up(&outcome) {
             let written = serde_json::to_vec_pretty(&outcome)
                 .map_err(std::io::Error::from)
                 .and_then(|bytes| write_atomically(&self.folder.summary(), &bytes));
@@ -96,6 +100,21 @@ impl<W: World> Work<W> {
             })?;
         }
         Ok(outcome)
+    }
+
+    /// Whether `summary.json` holds this result, in whatever time it was computed and
+    /// wherever the folder was then.
+    fn is_summed_up(&self, outcome: &Outcome) -> bool {
+        let text = read_text(&self.folder.summary(), MAX_SUMMARY_BYTES).ok();
+        let written: Option<Outcome> = text.and_then(|text| serde_json::from_str(&text).ok());
+        written.is_some_and(|written| {
+            let now = Outcome {
+                wall_seconds: written.wall_seconds,
+                run_dir: written.run_dir.clone(),
+                ..outcome.clone()
+            };
+            now == written
+        })
     }
 
     /// The loop of Algorithm 3.1. Ends early when the run is stopped or the recorder
