@@ -14,7 +14,7 @@ use std::path::Path;
 use std::process::Command;
 
 use common::{output, program, short, stderr, stdout, threads};
-use maxq_lab::report::figures::{Number, RunSource};
+use maxq_lab::report::figures::{Number, Panel, RunSource};
 use maxq_lab::report::{
     Arm, Base, Facts, Findings, FreshFacts, Judged, Moment, Plan, Study, Verdict, Winner,
 };
@@ -292,7 +292,10 @@ fn the_report_of_real_runs_repeats_and_reads_as_tables() {
             assert!(rows[0].iter().all(|column| !column.is_empty()), "{name}");
         } else if name.ends_with(".svg") {
             assert!(content.contains("seeds 1..3"), "{name} says what made it");
-            assert!(content.contains("maxq-lab study report"), "{name}");
+            for command in ["maxq-lab study study.json --out", "maxq-lab study report"] {
+                assert!(content.contains(command), "{name}");
+            }
+            assert!(!content.contains("DIR"), "{name} has a placeholder");
         }
     }
     assert_eq!(files.len(), 7 + 2 * Number::ALL.len());
@@ -321,23 +324,53 @@ fn every_figure_of_a_run_is_drawn_and_says_what_made_it() {
     let folder = parent.path().join("run");
     common::run_in(&folder, &short(&[]), 7, &threads(1));
     let source = RunSource::read(&folder).unwrap();
+    let at = folder.display().to_string();
     for number in Number::ALL {
-        let figure = source.figure(number).unwrap();
+        let figure = source.figure(number, "svg").unwrap();
         let svg = figure.svg().unwrap();
         assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
         let text = figure.text(80);
+        let made_by = format!(
+            "maxq-lab export {at} --format svg --figure {}",
+            number.name()
+        );
+        assert!(text.trim_end().ends_with(&made_by), "{text}");
         for drawn in [&svg, &text] {
-            assert!(drawn.contains("smoke, seed 7"), "{}", number.name());
-            assert!(drawn.contains(&format!("--figure {}", number.name())));
+            assert!(drawn.contains("smoke with "), "{}", number.name());
+            // Lines are broken in a picture, words are not.
+            let words = [
+                "seed",
+                "7,",
+                "evolution.generation_limit=6",
+                &at,
+                number.name(),
+            ];
+            for word in words {
+                assert!(drawn.contains(word), "{word} in figure {}", number.name());
+            }
         }
         assert!(rows(&figure.table().csv()).len() > 1);
     }
     // A line for every rank of the better half, a point for every generation.
-    let performance = source.figure(Number::F4_8).unwrap().table();
+    let performance = source.figure(Number::F4_8, "csv").unwrap().table();
     assert_eq!(performance.rows.len(), 4 * source.records.len());
     // Actions of ApproachBattery, ApproachNest and Turn.
-    let values = source.figure(Number::F4_3).unwrap();
+    let values = source.figure(Number::F4_3, "svg").unwrap();
     assert_eq!(values.panels.len(), 3);
+    assert!(values.svg().unwrap().contains("angle (deg)"));
+    // Probabilities can be compared from panel to panel: one scale, one look for each subtask.
+    let mut marks = std::collections::BTreeMap::new();
+    for panel in source.figure(Number::F4_10, "svg").unwrap().panels {
+        let Panel::Chart(chart) = panel else {
+            panic!("a hierarchy")
+        };
+        assert_eq!(chart.whole, Some([0.0, 1.0]));
+        for series in chart.series {
+            let known = *marks.entry(series.name.clone()).or_insert(series.mark);
+            assert_eq!(known, series.mark, "{}", series.name);
+        }
+    }
+    assert!(marks.len() > 2, "{marks:?}");
     let best = source.records.last().unwrap().individuals[0].tree.clone();
     let dot = succeeds(
         program()

@@ -79,7 +79,9 @@ pub(super) fn main(args: &Args) -> Done {
 fn of_run(args: &Args) -> Result<String, Failure> {
     let run = RunSource::read(&args.dir)?;
     if let Some(number) = wanted_figure(args)? {
-        return in_format(&run.figure(number)?, args.format);
+        let format = args.format.to_possible_value();
+        let name = format.as_ref().map_or("svg", |value| value.get_name());
+        return in_format(&run.figure(number, name)?, args.format);
     }
     Ok(match args.format {
         ExportFormat::Csv => run_export::individuals(&run).csv(),

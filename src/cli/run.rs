@@ -8,7 +8,7 @@ use super::show::Show;
 use super::signals::Caught;
 use super::source::Source;
 use crate::hierarchy::{Glyphs, draw};
-use crate::lab::{Keep, Outcome, RunOptions, departures, start};
+use crate::lab::{Keep, Outcome, RunOptions, departures, in_words, start};
 use crate::scenario::{Scenario, Selection};
 
 /// Evolve hierarchies for a scenario.
@@ -149,7 +149,9 @@ pub(super) fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String,
             outcome.run_dir
         ),
     ];
-    lines.extend(changed(scenario));
+    // A result must not pass for that of the embedded scenario whose name it has.
+    let changed = in_words(&departures(scenario));
+    lines.extend(changed.map(|changed| format!("changed: {changed}")));
     if let Some(best) = &outcome.best {
         lines.push(format!(
             "{} {}: {:.1} time steps a trial, {} composite and {}",
@@ -176,21 +178,6 @@ pub(super) fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String,
         lines.push(format!("\n{}", caution(scenario.evolution.selection)));
     }
     Ok(lines.join("\n") + "\n")
-}
-
-/// Settings that are told one by one.
-const TOLD: usize = 6;
-
-/// What sets a scenario apart from the embedded one whose name it has: a result must not
-/// pass for that one's.
-fn changed(scenario: &Scenario) -> Option<String> {
-    let all = departures(scenario);
-    let told: Vec<_> = all.iter().take(TOLD).map(ToString::to_string).collect();
-    let more = match all.len().saturating_sub(TOLD) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    (!told.is_empty()).then(|| format!("changed: {}{more}", told.join(", ")))
 }
 
 /// What the individual of rank 1 is.

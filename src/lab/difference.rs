@@ -47,6 +47,25 @@ pub fn departures(scenario: &Scenario) -> Vec<Difference> {
     embedded.map_or_else(Vec::new, |embedded| differences(scenario, &embedded))
 }
 
+/// Differences that are told one by one.
+const TOLD: usize = 6;
+
+/// The first differences, as `--set` takes them, and how many more there are; none if all is
+/// alike.
+#[must_use]
+pub fn in_words(differences: &[Difference]) -> Option<String> {
+    let told: Vec<_> = differences
+        .iter()
+        .take(TOLD)
+        .map(ToString::to_string)
+        .collect();
+    let more = match differences.len().saturating_sub(TOLD) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!told.is_empty()).then(|| told.join(", ") + &more)
+}
+
 fn compare(path: &str, one: Option<&Value>, other: Option<&Value>, found: &mut Vec<Difference>) {
     if one == other {
         return;

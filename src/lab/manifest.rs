@@ -26,6 +26,21 @@ pub struct Manifest {
     pub resumed: Vec<Invocation>,
 }
 
+impl Manifest {
+    /// The command lines that made the run what it is, as a shell takes them: that which
+    /// started it, and those which took it to another limit.
+    #[must_use]
+    pub fn commands(&self) -> Vec<String> {
+        let further = |resumed: &&Invocation| {
+            let words = &resumed.command_line;
+            words.iter().any(|word| word.starts_with("--generations"))
+        };
+        let further = self.resumed.iter().filter(further);
+        let all = std::iter::once(&self.started).chain(further);
+        all.map(Invocation::command).collect()
+    }
+}
+
 /// One start of the program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -65,5 +80,45 @@ impl Invocation {
             time: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
             threads,
         }
+    }
+
+    /// The command line, as a shell takes it.
+    #[must_use]
+    pub fn command(&self) -> String {
+        let words = self.command_line.iter().map(|word| shell_word(word));
+        words.collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// A word of a shell command line, quoted where it must be; control characters are written
+/// as bash and zsh read them, so that none is left.
+#[must_use]
+pub fn shell_word(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:@%+,".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    if !word.contains(char::is_control) {
+        return format!("'{}'", word.replace('\'', r"'\''"));
+    }
+    let escaped = word.chars().map(|c| match c {
+        '\'' | '\\' => format!("\\{c}"),
+        c if c.is_control() => format!("\\u{:04x}", u32::from(c)),
+        c => c.to_string(),
+    });
+    format!("$'{}'", escaped.collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shell_word;
+
+    #[test]
+    fn words_survive_the_shell() {
+        assert_eq!(shell_word("studies/thesis"), "studies/thesis");
+        assert_eq!(shell_word("my study"), "'my study'");
+        assert_eq!(shell_word("it's"), r"'it'\''s'");
+        assert_eq!(shell_word(""), "''");
+        assert_eq!(shell_word("a\nb's"), r"$'a\u000ab\'s'");
     }
 }

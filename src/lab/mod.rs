@@ -30,7 +30,7 @@ mod worlds;
 pub use checkpoint::{Checkpoint, LogPosition};
 pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
-pub use difference::{Difference, departures, differences};
+pub use difference::{Difference, departures, differences, in_words};
 pub use evaluate::{Evaluation, Protocol, Repeat, Scored, evaluate};
 pub use event::{Ending, Event};
 pub use folder::{Keep, RunFolder};
@@ -39,7 +39,7 @@ pub use learn::{
     Algorithm, Course, GivenPolicy, LearnCheck, LearnError, LearnProtocol, Learned, learn,
 };
 pub use log::{LogError, read_events};
-pub use manifest::{Invocation, Manifest};
+pub use manifest::{Invocation, Manifest, shell_word};
 pub use mean::{Mean, mean};
 pub use outcome::{BestIndividual, Outcome};
 pub use run::{Run, RunOptions, resume, start};

@@ -1,11 +1,14 @@
 //! Where figures and tables come from: they carry it.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use serde::Serialize;
 
 use super::facts::Facts;
+use super::plan::Plan;
 use super::study::Study;
+use crate::scenario::{EMBEDDED_PLANS, Embedded};
 
 /// What a figure or table of a study was made from. It names no machine and no time, so
 /// that the same runs give the same bytes anywhere.
@@ -23,7 +26,7 @@ pub struct Provenance {
     pub seeds: String,
     /// Versions and commits of the program that did the runs.
     pub versions: Vec<String>,
-    /// The command that makes it.
+    /// The commands that make it, in a folder of the study's name.
     pub command: String,
 }
 
@@ -40,7 +43,7 @@ impl Provenance {
             of: study.runs().len(),
             seeds: study.plan.seeds.to_string(),
             versions: versions.into_iter().collect(),
-            command: String::from("maxq-lab study report DIR"),
+            command: commands(&study.plan),
         }
     }
 
@@ -58,8 +61,22 @@ impl Provenance {
         } = self;
         let versions = self.versions.join(", ");
         format!(
-            "Study {study} (plan {plan_crc32}): {runs} of {of} runs, seeds {seeds}, maxq-lab {versions}; \
+            "Study {study} (CRC-32 of study.json {plan_crc32}): {runs} of {of} runs, seeds {seeds}, maxq-lab {versions}; \
              {command}"
         )
     }
+}
+
+/// The commands that do a study anew and report it. They name no folder that somebody has
+/// chosen, for the same runs give the same bytes anywhere.
+fn commands(plan: &Plan) -> String {
+    let name = &plan.name;
+    let embedded = EMBEDDED_PLANS.iter().find(|embedded| embedded.name == name);
+    let parse = |embedded: &Embedded| Plan::parse(embedded.json, name, Path::new("")).ok();
+    let embedded = embedded.and_then(parse);
+    let file = match embedded.is_some_and(|embedded| embedded == *plan) {
+        true => name.as_str(),
+        false => "study.json",
+    };
+    format!("maxq-lab study {file} --out {name}; maxq-lab study report {name}")
 }

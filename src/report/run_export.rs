@@ -11,9 +11,6 @@ use crate::hierarchy::to_dot;
 use crate::lab::{SetupError, WorldTask, with_world};
 use crate::worlds::World;
 
-/// The command, as it is named in what it makes.
-const COMMAND: &str = "maxq-lab export RUN_DIR";
-
 /// One row an individual of a generation.
 #[must_use]
 pub fn individuals(run: &RunSource) -> Table {
@@ -35,6 +32,7 @@ pub fn individuals(run: &RunSource) -> Table {
         "version",
         "command",
     ]);
+    let command = run.command("--format csv");
     for record in &run.records {
         for individual in &record.individuals {
             let delivered = individual
@@ -58,7 +56,7 @@ pub fn individuals(run: &RunSource) -> Table {
                 individual.difference_to_best.to_string(),
                 individual.tree.clone(),
                 run.version.clone(),
-                COMMAND.to_owned(),
+                command.clone(),
             ]);
         }
     }
@@ -88,7 +86,7 @@ pub fn json(run: &RunSource) -> Result<String, serde_json::Error> {
         generations: &'r [GenerationRecord],
     }
     let whole = Whole {
-        made_by: run.provenance(COMMAND),
+        made_by: run.provenance("--format json"),
         scenario: &run.scenario,
         seed: run.seed,
         generations: &run.records,
@@ -125,7 +123,8 @@ pub fn markdown(run: &RunSource) -> Result<String, SourceError> {
     }
     let mut text = format!("# {}, seed {}\n\n", run.scenario.name, run.seed);
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{}.\n\n{}", run.provenance(COMMAND), table.markdown());
+    let provenance = run.provenance("--format markdown");
+    let _ = writeln!(text, "{provenance}.\n\n{}", table.markdown());
     Ok(text)
 }
 
@@ -140,7 +139,7 @@ pub fn dot(run: &RunSource) -> Result<String, SetupError> {
         .and_then(|record| record.individuals.first());
     let tree = best.map(|best| best.tree.clone()).unwrap_or_default();
     let dot = with_world(run.scenario.clone(), Dot(&tree))?;
-    Ok(format!("// {}\n{dot}", run.provenance(COMMAND)))
+    Ok(format!("// {}\n{dot}", run.provenance("--format dot")))
 }
 
 /// A hierarchy as DOT; nothing where it is none.

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use super::What;
 use crate::cli::output::{self, Done};
+use crate::lab::shell_word;
 use crate::report::merge;
 
 /// Array tasks that a Slurm controller takes by default (MaxArraySize 1001).
@@ -82,9 +83,9 @@ pub(super) struct MergeArgs {
 /// Carries out `study plan`.
 pub(super) fn plan(args: &PlanArgs) -> Done {
     let study = args.what.study()?;
-    let folder = quoted(&study.folder.display().to_string());
-    let file = quoted(&study.folder.join("study.json").display().to_string());
-    let program = quoted(&args.program.program);
+    let folder = shell_word(&study.folder.display().to_string());
+    let file = shell_word(&study.folder.join("study.json").display().to_string());
+    let program = shell_word(&args.program.program);
     let lines = study.runs().into_iter().map(|run| {
         let name = study.name(&run);
         format!("{program} study {file} --out {folder} --jobs 1 --headless --only {name}\n")
@@ -132,9 +133,9 @@ trap stop TERM
 wait "$run"
 "#,
         name = study.plan.name,
-        program = quoted(&args.program.program),
-        file_quoted = quoted(&file),
-        folder_quoted = quoted(&folder),
+        program = shell_word(&args.program.program),
+        file_quoted = shell_word(&file),
+        folder_quoted = shell_word(&folder),
     ))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -145,26 +146,4 @@ pub(super) fn merge_parts(args: &MergeArgs) -> Done {
     let (parts, out) = (args.parts.len(), args.out.display());
     output::text(&format!("{runs} runs of {parts} parts in {out}\n"))?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// A word of a shell command line.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:@%+".contains(c);
-    match !word.is_empty() && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quoted;
-
-    #[test]
-    fn words_survive_the_shell() {
-        assert_eq!(quoted("studies/thesis"), "studies/thesis");
-        assert_eq!(quoted("my study"), "'my study'");
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-        assert_eq!(quoted(""), "''");
-    }
 }

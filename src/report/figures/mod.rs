@@ -99,6 +99,10 @@ pub struct Chart {
     pub x: String,
     /// What is on the vertical axis, with its unit.
     pub y: String,
+    /// The smallest and the largest value that there can be, where charts are to be compared;
+    /// else the axis is as long as the lines need it.
+    #[serde(skip)]
+    pub whole: Option<[f64; 2]>,
     /// The lines.
     pub series: Vec<Series>,
 }
@@ -110,6 +114,19 @@ pub struct Series {
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
+    /// Which of the colours and signs it is drawn with: the same thing in all charts of a
+    /// figure has the same.
+    #[serde(skip)]
+    pub mark: usize,
+}
+
+/// The number at an axis, without digits that say nothing.
+fn tick(value: f64) -> String {
+    let text = format!("{value:.4}");
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => String::from("0"),
+        text => text.to_owned(),
+    }
 }
 
 /// A figure could not be drawn.
@@ -197,6 +214,21 @@ impl Chart {
             }
         };
         finite().next()?;
-        Some([range(|point| point.0), range(|point| point.1)])
+        let vertical = self.whole.map(|[low, high]| (low, high));
+        Some([
+            range(|point| point.0),
+            vertical.unwrap_or_else(|| range(|point| point.1)),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tick;
+
+    #[test]
+    fn ticks_have_the_digits_that_they_need() {
+        let numbers = [5.0, 100.0, -0.0, 0.1 + 0.2, -12.5, -1e-9];
+        assert_eq!(numbers.map(tick), ["5", "100", "0", "0.3", "-12.5", "0"]);
     }
 }

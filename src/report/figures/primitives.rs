@@ -81,13 +81,23 @@ fn chart<W: World>(experiment: &Experiment<W>, skill: &Skill) -> Option<Chart> {
     let series = actions.iter().zip(lines).enumerate();
     Some(Chart {
         title: subtask.name.to_owned(),
-        x: name.replace('_', " "),
-        y: String::from("Q"),
+        x: with_unit(name),
+        y: String::from("action value Q"),
+        whole: None,
         series: series
             .map(|(index, (action, points))| Series {
                 name: format!("action {} {action}", index + 1),
                 points,
+                mark: index,
             })
             .collect(),
     })
+}
+
+/// A reading as it stands at an axis; its name ends in its unit.
+fn with_unit(name: &str) -> String {
+    match name.rsplit_once('_') {
+        Some((what, unit)) => format!("{} ({unit})", what.replace('_', " ")),
+        None => name.to_owned(),
+    }
 }

@@ -1,11 +1,14 @@
 //! The figures of one run.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::primitives::action_values;
 use super::{Chart, Figure, Number, Panel, Series, Sketch};
 use crate::evolution::{Experiment, GenerationRecord, read_tree};
-use crate::lab::{Event, Recording, RunError, SetupError, WorldTask, with_world};
+use crate::lab::{
+    Event, Recording, RunError, SetupError, WorldTask, departures, in_words, shell_word, with_world,
+};
 use crate::scenario::Scenario;
 use crate::worlds::World;
 
@@ -23,6 +26,8 @@ pub struct RunSource {
     pub seed: u64,
     /// Version and commit of the program that did it.
     pub version: String,
+    /// The command lines that did it.
+    pub commands: Vec<String>,
     /// Its generations.
     pub records: Vec<GenerationRecord>,
 }
@@ -63,6 +68,7 @@ impl RunSource {
         let source = Self {
             folder: folder.to_owned(),
             version: format!("{} ({})", started.version, started.commit),
+            commands: recording.manifest.commands(),
             seed: recording.manifest.seed,
             scenario: recording.manifest.scenario,
             records: recording
@@ -82,22 +88,36 @@ impl RunSource {
         }
     }
 
-    /// Where what is made of the run comes from.
+    /// The command that makes something of the run, with these further arguments.
     #[must_use]
-    pub fn provenance(&self, command: &str) -> String {
+    pub fn command(&self, arguments: &str) -> String {
+        let folder = shell_word(&self.folder.display().to_string());
+        format!("maxq-lab export {folder} {arguments}")
+    }
+
+    /// Where what is made of the run with these arguments of `export` comes from: the run,
+    /// what sets it apart from the embedded scenario of its name, and all commands.
+    #[must_use]
+    pub fn provenance(&self, arguments: &str) -> String {
         let generations = self.records.len();
+        let changed = in_words(&departures(&self.scenario));
+        let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
         format!(
-            "Run of {}, seed {}, {generations} generations, maxq-lab {}; {command}",
-            self.scenario.name, self.seed, self.version
+            "Run of {}{changed}, seed {}, {generations} generations, maxq-lab {}: {}; {}",
+            self.scenario.name,
+            self.seed,
+            self.version,
+            self.commands.join("; "),
+            self.command(arguments)
         )
     }
 
-    /// A figure of the run.
+    /// A figure of the run, for this format of `export`.
     ///
     /// # Errors
     /// When the run does not hold what the figure shows.
-    pub fn figure(&self, number: Number) -> Result<Figure, SourceError> {
-        let command = format!("maxq-lab export RUN_DIR --figure {}", number.name());
+    pub fn figure(&self, number: Number, format: &str) -> Result<Figure, SourceError> {
+        let arguments = format!("--format {format} --figure {}", number.name());
         let (title, panels) = match number {
             Number::F4_3 => (
                 String::from("Action values of the primitive subtasks"),
@@ -127,7 +147,7 @@ impl RunSource {
         Ok(Figure {
             number: number.name(),
             title: format!("{title}, {}", self.scenario.name),
-            provenance: self.provenance(&command),
+            provenance: self.provenance(&arguments),
             panels,
         })
     }
@@ -152,9 +172,11 @@ impl RunSource {
             title: String::from("Mean difference of the better half to the best"),
             x: String::from("generation"),
             y: String::from("structural difference (points)"),
+            whole: None,
             series: vec![Series {
                 name: String::from("mean difference"),
                 points: points.collect(),
+                mark: 0,
             }],
         }
     }
@@ -171,47 +193,45 @@ impl RunSource {
                 .iter()
                 .filter_map(|r| Some((r.generation as f64, r.mean_trial_steps(rank)?)))
                 .collect(),
+            mark: rank - 1,
         });
         Chart {
             title: String::from("Fitness by rank"),
             x: String::from("generation"),
             y: String::from("mean trial length (time steps)"),
+            whole: None,
             series: series.collect(),
         }
     }
 
     fn probabilities(&self) -> Vec<Panel> {
-        let types = self
-            .records
-            .first()
-            .map_or(0, |r| r.selection_probabilities.len());
-        (0..types)
-            .map(|index| Panel::Chart(self.probabilities_in(index)))
+        let first = self.records.first();
+        let of_types = first.map_or(&[][..], |record| &record.selection_probabilities);
+        // A primitive subtask looks the same in every state type in which it can be selected.
+        let names = of_types.iter().flatten().flat_map(|of_type| of_type.keys());
+        let marks: BTreeSet<_> = names.collect();
+        let marks: Vec<_> = marks.into_iter().collect();
+        (0..of_types.len())
+            .map(|index| Panel::Chart(self.probabilities_in(index, &marks)))
             .collect()
     }
 
-    fn probabilities_in(&self, state_type: usize) -> Chart {
-        let of = |record: &GenerationRecord| {
-            record
-                .selection_probabilities
-                .get(state_type)
-                .cloned()
-                .flatten()
+    fn probabilities_in(&self, state_type: usize, marks: &[&String]) -> Chart {
+        let at = |record: &GenerationRecord, name: &String| {
+            let of_type = record.selection_probabilities.get(state_type)?.as_ref()?;
+            Some((record.generation as f64, *of_type.get(name)?))
         };
-        let names = self.records.first().and_then(of).unwrap_or_default();
         // A primitive subtask that is never selected has no line.
-        let series = names.keys().map(|name| Series {
-            name: name.clone(),
-            points: self
-                .records
-                .iter()
-                .filter_map(|record| Some((record.generation as f64, *of(record)?.get(name)?)))
-                .collect(),
+        let series = marks.iter().enumerate().map(|(mark, name)| Series {
+            name: (*name).clone(),
+            points: self.records.iter().filter_map(|r| at(r, name)).collect(),
+            mark,
         });
         Chart {
             title: format!("State type {}", state_type + 1),
             x: String::from("generation"),
             y: String::from("probability of selection"),
+            whole: Some([0.0, 1.0]),
             series: series
                 .filter(|s| s.points.iter().any(|(_, p)| *p > 0.0))
                 .collect(),

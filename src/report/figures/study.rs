@@ -10,6 +10,9 @@ use crate::report::provenance::Provenance;
 use crate::report::statistics::iqm;
 use crate::report::study::Study;
 
+/// What the lines of a chart over all seeds are.
+const LINES: &str = "; lines are interquartile means over seeds";
+
 /// Points of a course from the first generation to the last.
 const POINTS: usize = 41;
 
@@ -28,12 +31,12 @@ pub fn study_figure(study: &Study, all: &[Facts], number: Number) -> Result<Figu
         Number::F4_7 => (
             "Structural difference to the best",
             view.differences(),
-            String::new(),
+            String::from(LINES),
         ),
         Number::F4_8 => (
             "Performance of the best and of the middle",
             view.performance(),
-            String::new(),
+            String::from(LINES),
         ),
         Number::F4_5 => (
             "Most frequent final structures",
@@ -83,20 +86,14 @@ impl View<'_> {
 
     fn differences(&self) -> Vec<Panel> {
         self.charts("structural difference (points)", |chart, runs, arm| {
-            chart
-                .series
-                .push(course(runs, arm.to_owned(), |m| m.difference));
+            add_course(chart, runs, arm.to_owned(), |m| m.difference);
         })
     }
 
     fn performance(&self) -> Vec<Panel> {
         self.charts("mean trial length (time steps)", |chart, runs, arm| {
-            chart
-                .series
-                .push(course(runs, format!("{arm}, best"), |m| m.best_steps));
-            chart
-                .series
-                .push(course(runs, format!("{arm}, middle"), |m| m.middle_steps));
+            add_course(chart, runs, format!("{arm}, best"), |m| m.best_steps);
+            add_course(chart, runs, format!("{arm}, middle"), |m| m.middle_steps);
         })
     }
 
@@ -107,6 +104,7 @@ impl View<'_> {
                 title: model.name.clone(),
                 x: String::from("generations (%)"),
                 y: y.to_owned(),
+                whole: None,
                 series: Vec::new(),
             };
             for (arm, name) in self.evolving() {
@@ -170,7 +168,7 @@ impl View<'_> {
                 continue;
             };
             let source = RunSource::read(&self.study.run_folder(&median.run))?;
-            for mut panel in source.figure(number)?.panels {
+            for mut panel in source.figure(number, "svg")?.panels {
                 match &mut panel {
                     Panel::Chart(chart) => {
                         chart.title = format!("{}: {}", scenario.name, chart.title)
@@ -187,8 +185,8 @@ impl View<'_> {
     }
 }
 
-/// Interquartile means over runs, from the first generation to the last.
-fn course(runs: &[&Facts], name: String, of: fn(&Moment) -> f64) -> Series {
+/// Adds the course of interquartile means over runs, from the first generation to the last.
+fn add_course(chart: &mut Chart, runs: &[&Facts], name: String, of: fn(&Moment) -> f64) {
     let points = (0..POINTS).map(|point| {
         let share = point as f64 / (POINTS - 1) as f64;
         let values: Vec<_> = runs
@@ -197,8 +195,9 @@ fn course(runs: &[&Facts], name: String, of: fn(&Moment) -> f64) -> Series {
             .collect();
         (100.0 * share, iqm(&values))
     });
-    Series {
+    chart.series.push(Series {
         name,
         points: points.collect(),
-    }
+        mark: chart.series.len(),
+    });
 }

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{Chart, Figure, Panel, Sketch};
+use super::{Chart, Figure, Panel, Sketch, tick};
 
 /// Width of a figure in pixels.
 const WIDTH: u32 = 960;
@@ -65,8 +65,8 @@ pub(super) fn draw(figure: &Figure) -> Result<String, String> {
             }
             top += height;
         }
-        for (line, y) in provenance.iter().zip(top as i32 + 4..) {
-            let y = top as i32 + 4 + (y - top as i32 - 4) * 14;
+        for (index, line) in provenance.iter().enumerate() {
+            let y = top as i32 + 4 + 14 * index as i32;
             put(&root, line, (10, y), 11, HPos::Left)?;
         }
         root.present().map_err(words)?;
@@ -109,8 +109,8 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         .y_desc(&chart.y)
         .x_labels(8)
         .y_labels(7)
-        .x_label_formatter(&tick)
-        .y_label_formatter(&tick)
+        .x_label_formatter(&|value| tick(*value))
+        .y_label_formatter(&|value| tick(*value))
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .label_style((FONT, 11))
@@ -118,7 +118,7 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         .draw()
         .map_err(words)?;
     for (index, series) in chart.series.iter().enumerate() {
-        let style = COLOURS[index % COLOURS.len()].stroke_width(2);
+        let style = COLOURS[series.mark % COLOURS.len()].stroke_width(2);
         context
             .draw_series(LineSeries::new(series.points.iter().copied(), style))
             .map_err(words)?;
@@ -130,15 +130,6 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         put(&legend, &series.name, (18, y - 6), 11, HPos::Left)?;
     }
     Ok(())
-}
-
-/// The number at a tick of an axis, without digits that say nothing.
-fn tick(value: &f64) -> String {
-    let text = format!("{value:.4}");
-    match text.trim_end_matches('0').trim_end_matches('.') {
-        "-0" => String::from("0"),
-        text => text.to_owned(),
-    }
 }
 
 /// Composite subtasks in boxes with a bold border, primitive ones without.
@@ -217,16 +208,4 @@ fn wrapped(text: &str) -> Vec<String> {
 
 fn words(error: impl std::fmt::Display) -> String {
     error.to_string()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::tick;
-
-    #[test]
-    fn ticks_have_the_digits_that_they_need() {
-        let numbers = [5.0, 100.0, -0.0, 0.1 + 0.2, -12.5, -1e-9];
-        let ticks: Vec<_> = numbers.iter().map(tick).collect();
-        assert_eq!(ticks, ["5", "100", "0", "0.3", "-12.5", "0"]);
-    }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Chart, Figure, Panel};
+use super::{Chart, Figure, Panel, tick};
 use crate::hierarchy::Glyphs;
 use crate::report::table::short;
 
@@ -46,8 +46,8 @@ fn draw_chart(chart: &Chart, columns: usize) -> String {
         (((value - low) / (high - low) * (cells - 1) as f64).round() as usize).min(cells - 1)
     };
     // The first series is drawn last, so that it lies on top.
-    for (index, series) in chart.series.iter().enumerate().rev() {
-        let sign = SIGNS[index % SIGNS.len()];
+    for series in chart.series.iter().rev() {
+        let sign = SIGNS[series.mark % SIGNS.len()];
         for &(x, y) in series
             .points
             .iter()
@@ -71,16 +71,16 @@ fn draw_chart(chart: &Chart, columns: usize) -> String {
         );
     }
     let _ = writeln!(text, "{:>MARGIN$} +{}", "", "-".repeat(width));
-    let (left, right) = (short(left), short(right));
+    let (left, right) = (tick(left), tick(right));
     let gap = width.saturating_sub(left.len() + right.len());
     let _ = writeln!(text, "{:>MARGIN$}  {left}{:gap$}{right}", "", "");
     let _ = writeln!(text, "{:>MARGIN$}  {}", "", chart.x);
-    for (index, series) in chart.series.iter().enumerate() {
+    for series in &chart.series {
         let _ = writeln!(
             text,
             "{:>MARGIN$}  {} {}",
             "",
-            char::from(SIGNS[index % SIGNS.len()]),
+            char::from(SIGNS[series.mark % SIGNS.len()]),
             series.name
         );
     }
