@@ -4,8 +4,29 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::SubtaskId;
-use super::scene::{Move, Reading, Scale};
+use super::scene::{Move, Reading, Scale, Snapshot, Sweep};
+use super::{Probe, StateType, SubtaskId};
+
+/// Radius in cells of an agent that is in one.
+pub(super) const RADIUS: f64 = 0.35;
+
+/// A direction to walk in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Direction {
+    Up,
+    Down,
+    Right,
+    Left,
+}
+
+impl Direction {
+    pub(super) const ALL: [Self; 4] = [Self::Up, Self::Down, Self::Right, Self::Left];
+
+    /// The other three.
+    pub(super) fn others(self) -> [Self; 3] {
+        std::array::from_fn(|i| Self::ALL[(self as usize + 1 + i) % 4])
+    }
+}
 
 /// The cells of a rectangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +43,19 @@ impl Cells {
     pub(super) fn centre(self, cell: usize) -> [f64; 2] {
         let (row, column) = (cell / self.columns, cell % self.columns);
         [column as f64 + 0.5, (self.rows - row) as f64 - 0.5]
+    }
+
+    /// The cell next to one; `None` at the edge.
+    pub(super) fn neighbour(self, cell: usize, direction: Direction) -> Option<usize> {
+        let column = cell % self.columns;
+        match direction {
+            Direction::Up => cell.checked_sub(self.columns),
+            Direction::Down => {
+                Some(cell + self.columns).filter(|&to| to < self.columns * self.rows)
+            }
+            Direction::Right => (column + 1 < self.columns).then_some(cell + 1),
+            Direction::Left => (column > 0).then(|| cell - 1),
+        }
     }
 
     /// The cell that a point lies in; `None` outside.
@@ -56,6 +90,39 @@ impl Cells {
             value: Some(value),
         });
         readings.collect()
+    }
+
+    /// What an agent looks like that is in a cell, and of which there is no more to say.
+    pub(super) fn snapshot(self, cell: usize, state_type: StateType) -> Snapshot {
+        Snapshot {
+            at: self.centre(cell),
+            radius: RADIUS,
+            heading: None,
+            carries: None,
+            marks: Vec::new(),
+            view: None,
+            sees: None,
+            rays: Vec::new(),
+            readings: self.readings(cell),
+            state_type,
+            variant: 0,
+        }
+    }
+
+    /// What agents perceive from cell to cell.
+    pub(super) fn sweep<P>(self, percept: impl Fn(usize) -> P) -> Sweep<P> {
+        let probe = |cell| Probe {
+            label: format!("cell {cell}"),
+            readings: (self.readings(cell).into_iter())
+                .filter_map(|reading| Some((reading.name, reading.value?)))
+                .collect(),
+            percept: percept(cell),
+        };
+        Sweep {
+            across: self.across(),
+            down: Some(self.down()),
+            probes: self.upwards().map(probe).collect(),
+        }
     }
 }
 
@@ -101,5 +168,18 @@ mod tests {
             assert_eq!(cells.cell_at(outside), None);
         }
         assert_eq!(cells.upwards().next(), Some(36));
+    }
+
+    #[test]
+    fn neighbours_are_next_to_each_other() {
+        let cells = Cells {
+            columns: 3,
+            rows: 2,
+        };
+        let around = |cell| Direction::ALL.map(|direction| cells.neighbour(cell, direction));
+        assert_eq!(around(0), [None, Some(3), Some(1), None]);
+        assert_eq!(around(5), [Some(2), None, None, Some(4)]);
+        let others = Direction::Right.others();
+        assert_eq!(others, [Direction::Left, Direction::Up, Direction::Down]);
     }
 }

@@ -27,7 +27,7 @@ use rand::RngExt;
 use self::catalogue::{ABOVE, AT_GOAL, AT_START, DOWN, INPUTS, LAST, LEFT, RIGHT};
 pub use self::model::{CliffBegin, CliffModel};
 use super::finite::FiniteModel;
-use super::grid::Cells;
+use super::grid::{Cells, Direction};
 use super::{Catalogue, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::Problem;
@@ -90,15 +90,13 @@ impl CliffWorld {
     }
 
     fn act(&self, cell: usize, primitive: SubtaskId) -> (usize, f64) {
-        let columns = self.cells.columns;
-        let column = cell % columns;
-        let to = match primitive {
-            DOWN if cell + columns < self.count() => cell + columns,
-            RIGHT if column + 1 < columns => cell + 1,
-            LEFT if column > 0 => cell - 1,
-            DOWN | RIGHT | LEFT => cell,
-            _ => cell.checked_sub(columns).unwrap_or(cell),
+        let direction = match primitive {
+            DOWN => Direction::Down,
+            RIGHT => Direction::Right,
+            LEFT => Direction::Left,
+            _ => Direction::Up,
         };
+        let to = self.cells.neighbour(cell, direction).unwrap_or(cell);
         match self.is_cliff(to) {
             true => (self.start(), self.model.fall_reward),
             false => (to, self.model.step_reward),

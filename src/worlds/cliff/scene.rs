@@ -5,10 +5,7 @@ use super::{CliffWorld, Percept};
 use crate::random::Stream;
 use crate::worlds::grid::{moves, outer_walls};
 use crate::worlds::scene::{Mark, Role, Scenery, Scenic, Snapshot, Sweep};
-use crate::worlds::{Probe, StateType, SubtaskId, World};
-
-/// Radius of the agent in cells.
-const RADIUS: f64 = 0.35;
+use crate::worlds::{StateType, SubtaskId, World};
 
 impl Scenic for CliffWorld {
     fn scenery(&self) -> Scenery {
@@ -35,19 +32,7 @@ impl Scenic for CliffWorld {
     }
 
     fn snapshot(&self, state: &usize) -> Snapshot {
-        Snapshot {
-            at: self.cells.centre(*state),
-            radius: RADIUS,
-            heading: None,
-            carries: None,
-            marks: Vec::new(),
-            view: None,
-            sees: None,
-            rays: Vec::new(),
-            readings: self.cells.readings(*state),
-            state_type: self.state_type(state),
-            variant: 0,
-        }
+        self.cells.snapshot(*state, self.state_type(state))
     }
 
     fn position(&self, state: &usize) -> [f64; 2] {
@@ -64,17 +49,6 @@ impl Scenic for CliffWorld {
     }
 
     fn sweeps(&self, _: SubtaskId, _: StateType) -> Vec<Sweep<Percept>> {
-        let probe = |cell| Probe {
-            label: format!("cell {cell}"),
-            readings: (self.cells.readings(cell).into_iter())
-                .filter_map(|reading| Some((reading.name, reading.value?)))
-                .collect(),
-            percept: self.percept(&cell),
-        };
-        vec![Sweep {
-            across: self.cells.across(),
-            down: Some(self.cells.down()),
-            probes: self.cells.upwards().map(probe).collect(),
-        }]
+        vec![self.cells.sweep(|cell| self.percept(&cell))]
     }
 }

@@ -3,12 +3,9 @@
 use super::catalogue::{AT_DESTINATION, AT_PASSENGER, EAST, NORTH, RIDING, SOUTH, WAITING, WEST};
 use super::{Passenger, Percept, TaxiState, TaxiWorld};
 use crate::random::Stream;
-use crate::worlds::grid::{Cells, moves, outer_walls};
+use crate::worlds::grid::{Cells, RADIUS, moves, outer_walls};
 use crate::worlds::scene::{Mark, Role, Scale, Scenery, Scenic, Snapshot, Sweep};
 use crate::worlds::{Probe, StateType, SubtaskId, World};
-
-/// Radius of the taxi in cells.
-const RADIUS: f64 = 0.35;
 
 impl Scenic for TaxiWorld {
     fn scenery(&self) -> Scenery {
