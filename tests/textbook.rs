@@ -14,6 +14,8 @@
 mod cliff;
 #[path = "textbook/fickle.rs"]
 mod fickle;
+#[path = "textbook/four_rooms.rs"]
+mod four_rooms;
 #[path = "textbook/taxi.rs"]
 mod taxi;
 #[path = "textbook/worlds.rs"]
@@ -27,6 +29,7 @@ use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::World;
 use maxq_lab::worlds::WorldModel;
 use maxq_lab::worlds::cliff::CliffWorld;
+use maxq_lab::worlds::four_rooms::FourRoomsWorld;
 use maxq_lab::worlds::taxi::TaxiWorld;
 
 fn scenario(name: &str, settings: &[&str]) -> Scenario {
@@ -50,6 +53,15 @@ fn cliff(settings: &[&str]) -> Experiment<CliffWorld> {
         panic!("a cliff scenario")
     };
     let world = CliffWorld::new(model).unwrap();
+    Experiment::new(scenario, world).unwrap()
+}
+
+fn four_rooms(settings: &[&str]) -> Experiment<FourRoomsWorld> {
+    let scenario = scenario("four-rooms", settings);
+    let WorldModel::FourRooms(model) = &scenario.world else {
+        panic!("a scenario of four rooms")
+    };
+    let world = FourRoomsWorld::new(model).unwrap();
     Experiment::new(scenario, world).unwrap()
 }
 

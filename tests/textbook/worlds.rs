@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::worlds::scene::Scenic;
 
-use super::{cliff, taxi};
+use super::{cliff, four_rooms, taxi};
 
 /// Steps sampled for each action in a state.
 const SAMPLES: usize = 400;
@@ -78,4 +78,12 @@ fn the_fickle_taxi_does_what_its_model_says() {
 #[test]
 fn the_walker_does_what_its_model_says() {
     assert_eq!(check(&cliff(&[]).world), 38);
+}
+
+#[test]
+fn who_walks_in_four_rooms_does_what_the_model_says() {
+    assert_eq!(check(&four_rooms(&[]).world), 104);
+    // The goal in a hallway, too.
+    let hallway = "world.four_rooms.goal_cell=[8, 6]";
+    assert_eq!(check(&four_rooms(&[hallway]).world), 104);
 }
