@@ -19,9 +19,10 @@ use std::time::Duration;
 
 use common::{SHORT, output, program, stderr, stdout};
 use maxq_lab::evolution::Origin;
-use maxq_lab::lab::{Event, Keep, RunFolder, read_events};
+use maxq_lab::lab::{Event, Keep, RunFolder, read_events, start};
 use maxq_lab::report::{
-    Arm, Base, Happening, Plan, Reevaluation, Stage, Study, StudyControls, carry_out, status,
+    Arm, Base, Happening, Plan, Reevaluation, Stage, StatusWatch, Study, StudyControls, carry_out,
+    status,
 };
 use maxq_lab::scenario::EMBEDDED;
 
@@ -242,6 +243,49 @@ fn every_arm_does_what_its_name_says() {
         "as many generations"
     );
     assert_eq!(trials["flat"], trials["hand_designed"]);
+}
+
+#[test]
+fn a_look_reads_what_has_changed_and_nothing_else() {
+    let parent = tempfile::tempdir().unwrap();
+    let study = Study::create(plan(&[Base::Evolved]), parent.path()).unwrap();
+    let [run, other] = study.runs()[..] else {
+        panic!("two seeds")
+    };
+    let mut watch = StatusWatch::of(&study);
+    let mut stages = || {
+        let looked = watch.look();
+        looked.iter().map(|status| status.stage).collect::<Vec<_>>()
+    };
+    assert_eq!(stages(), [Stage::Waiting, Stage::Waiting]);
+    do_all(&study);
+    assert_eq!(stages(), [Stage::Done, Stage::Done]);
+
+    // Damaged so that it looks the same from outside: who read it would find it unreadable.
+    let file = study.run_folder(&run).join("evaluation.json");
+    let before = fs::metadata(&file).unwrap();
+    fs::write(&file, " ".repeat(before.len().try_into().unwrap())).unwrap();
+    let opened = fs::File::options().write(true).open(&file).unwrap();
+    opened.set_modified(before.modified().unwrap()).unwrap();
+    assert_eq!(stages(), [Stage::Done, Stage::Done]);
+    assert_eq!(status(&study)[0].stage, Stage::Unreadable);
+    fs::remove_file(&file).unwrap();
+
+    // A run that is done anew is followed from its first generation on.
+    let folder = study.run_folder(&other);
+    fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(stages(), [Stage::Evolved, Stage::Waiting]);
+    let scenario = study.arm(&other).apply(study.scenario(&other)).unwrap();
+    let begun = start(scenario, other.seed, &folder, &common::threads(1)).unwrap();
+    common::stop_after(begun, 2);
+    let looked = watch.look();
+    assert_eq!(looked[1].stage, Stage::Interrupted);
+    let generations = usize::try_from(looked[1].generations).unwrap();
+    assert_eq!(looked[1].best_steps.len(), generations);
+    assert!(generations >= 2);
+    do_all(&study);
+    let ends = watch.look().into_iter().map(|status| status.stage);
+    assert!(ends.eq([Stage::Done, Stage::Done]));
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! What has changed in a run folder since the last look.
 
-use std::fs::{File, Metadata};
+use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 
@@ -15,7 +15,7 @@ use super::manifest::Manifest;
 use super::pulse::{BEAT, Beat, PULSE_FILE};
 use super::run_error::RunError;
 use super::watch::{Life, News, Recording};
-use crate::files::read_bytes;
+use crate::files::{Stamp, read_bytes};
 
 /// A pulse that stays the same for this long has stopped: more than ten beats, and
 /// the minute for which some shares cache what they know of a file is the exception.
@@ -28,9 +28,10 @@ const MAX_PULSE_BYTES: u64 = 1 << 16;
 /// file before its content.
 const PATIENCE: u32 = 5;
 
-/// Looks at a run folder again and again, without taking a lock or leaving a trace.
+/// Looks at a run folder again and again, without taking a lock or leaving a trace, and reads
+/// what is new there.
 #[derive(Debug)]
-pub(super) struct Follower {
+pub struct Follower {
     folder: PathBuf,
     run: Option<Stamped<Manifest>>,
     log: LogReader,
@@ -38,14 +39,6 @@ pub(super) struct Follower {
     beat: Option<(Beat, Instant)>,
     life: Option<Life>,
     unreadable: u32,
-}
-
-/// Tells one version of a file from another, and from a file that took its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Stamp {
-    file: (u64, u64),
-    length: u64,
-    modified: Option<SystemTime>,
 }
 
 #[derive(Debug)]
@@ -65,7 +58,9 @@ struct LogReader {
 }
 
 impl Follower {
-    pub(super) fn of(folder: &Path) -> Self {
+    /// Of the run in a folder, which need not be there yet.
+    #[must_use]
+    pub fn of(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
             run: None,
@@ -80,7 +75,7 @@ impl Follower {
     /// What is new since the last look.
     pub(super) fn look(&mut self, now: Instant) -> Vec<News> {
         let mut news = Vec::new();
-        match self.look_for(now, &mut news) {
+        match self.try_look(now, &mut news) {
             Ok(()) => self.unreadable = 0,
             Err(error) => {
                 self.unreadable += 1;
@@ -95,7 +90,7 @@ impl Follower {
     /// The folder as it is.
     pub(super) fn read(mut self) -> Result<Recording, RunError> {
         let mut news = Vec::new();
-        self.look_for(Instant::now(), &mut news)?;
+        self.try_look(Instant::now(), &mut news)?;
         let events = news.into_iter().filter_map(|news| match news {
             News::Event(event) => Some(event),
             _ => None,
@@ -116,7 +111,12 @@ impl Follower {
         }
     }
 
-    fn look_for(&mut self, now: Instant, news: &mut Vec<News>) -> Result<(), RunError> {
+    /// Adds what is new since the last look; what cannot be read, for the moment at least, is
+    /// an error, and looked at again the next time.
+    ///
+    /// # Errors
+    /// When `run.json` or the log cannot be read.
+    pub fn try_look(&mut self, now: Instant, news: &mut Vec<News>) -> Result<(), RunError> {
         let Some(stamp) = self.stamp("run.json") else {
             if self.run.take().is_some() {
                 self.forget();
@@ -243,25 +243,7 @@ impl Follower {
     }
 
     fn stamp(&self, name: &str) -> Option<Stamp> {
-        let metadata = self.folder.join(name).metadata().ok()?;
-        metadata.is_file().then(|| Stamp::of(&metadata))
-    }
-}
-
-impl Stamp {
-    fn of(metadata: &Metadata) -> Self {
-        #[cfg(unix)]
-        let file = {
-            use std::os::unix::fs::MetadataExt;
-            (metadata.dev(), metadata.ino())
-        };
-        #[cfg(not(unix))]
-        let file = (0, 0);
-        Self {
-            file,
-            length: metadata.len(),
-            modified: metadata.modified().ok(),
-        }
+        Stamp::of(&self.folder.join(name))
     }
 }
 

@@ -35,6 +35,7 @@ pub use evaluate::{Evaluation, Protocol, Repeat, Scored, evaluate};
 pub use event::{Ending, Event};
 pub use folder::{Keep, RunFolder};
 pub use folder_error::{FolderError, Occupied};
+pub use follower::Follower;
 pub use learn::{
     Algorithm, Course, GivenPolicy, LearnCheck, LearnError, LearnProtocol, Learned, learn,
 };

@@ -43,7 +43,7 @@ pub use plan_error::PlanError;
 pub use provenance::Provenance;
 pub use runner::{Happening, StudyControls, carry_out};
 pub use single::{Fresh, Single, SingleError};
-pub use status::{RunStatus, Stage, course, status};
+pub use status::{RunStatus, Stage, StatusWatch, course, status};
 pub use study::{RunId, Study, StudyError};
 pub use table::Table;
 pub use write::{ReportError, Written, read_facts, write_report};

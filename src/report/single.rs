@@ -20,6 +20,11 @@ use crate::learning::{Gate, Stopped};
 use crate::scenario::Scenario;
 use crate::worlds::World;
 
+/// The file with the result of a run.
+pub(super) const SUMMARY: &str = "summary.json";
+/// The file with the evaluation of its winner.
+pub(super) const FRESH: &str = "evaluation.json";
+
 /// Version of the format of `evaluation.json`.
 const FRESH_FORMAT: u32 = 1;
 
@@ -281,7 +286,7 @@ pub(super) fn check_origin(
 /// # Errors
 /// When the file is not a result.
 pub(super) fn summary(folder: &Path) -> Result<Option<Outcome>, SingleError> {
-    read(folder.join("summary.json"))
+    read(folder.join(SUMMARY))
 }
 
 /// The evaluation of the winner of the run in a folder; none before it is done.
@@ -289,7 +294,7 @@ pub(super) fn summary(folder: &Path) -> Result<Option<Outcome>, SingleError> {
 /// # Errors
 /// When the file is not an evaluation of this version.
 pub(super) fn fresh(folder: &Path) -> Result<Option<Fresh>, SingleError> {
-    let path = folder.join("evaluation.json");
+    let path = folder.join(FRESH);
     let fresh: Option<Fresh> = read(path.clone())?;
     match &fresh {
         Some(found) if found.format != FRESH_FORMAT => Err(SingleError::Misfit {

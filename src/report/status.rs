@@ -1,12 +1,14 @@
 //! How far the runs of a study are, read from their folders at any time.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use serde::Serialize;
 
-use super::single::{SingleError, fresh, summary};
+use super::single::{FRESH, SUMMARY, SingleError, fresh, summary};
 use super::study::{RunId, Study};
-use crate::lab::{Event, Life, Recording, RunError};
+use crate::files::Stamp;
+use crate::lab::{Event, Follower, Life, News, Recording, RunError};
 
 /// How far a run is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -83,15 +85,37 @@ pub struct RunStatus {
 /// runs takes a fraction of a second.
 #[must_use]
 pub fn status(study: &Study) -> Vec<RunStatus> {
-    study
-        .runs()
-        .into_iter()
-        .map(|run| status_of(study, run))
-        .collect()
+    StatusWatch::of(study).look()
 }
 
-fn status_of(study: &Study, run: RunId) -> RunStatus {
-    let mut status = RunStatus {
+/// Looks at the runs of a study again and again, and reads only what has changed since the
+/// last look.
+#[derive(Debug)]
+pub struct StatusWatch {
+    runs: Vec<Watched>,
+}
+
+impl StatusWatch {
+    /// Of the runs of a study, which need not have begun.
+    #[must_use]
+    pub fn of(study: &Study) -> Self {
+        let runs = study.runs().into_iter();
+        Self {
+            runs: runs.map(|run| Watched::of(waiting(study, run))).collect(),
+        }
+    }
+
+    /// How far every run is now, in the order of the study.
+    #[must_use]
+    pub fn look(&mut self) -> Vec<RunStatus> {
+        let now = Instant::now();
+        let look = |run: &mut Watched| run.look(now).clone();
+        self.runs.iter_mut().map(look).collect()
+    }
+}
+
+fn waiting(study: &Study, run: RunId) -> RunStatus {
+    RunStatus {
         run,
         number: run.number,
         name: study.name(&run),
@@ -102,45 +126,126 @@ fn status_of(study: &Study, run: RunId) -> RunStatus {
         best_steps: Vec::new(),
         fresh_steps: None,
         trouble: None,
-    };
-    if let Err(error) = look(&mut status) {
-        status.stage = Stage::Unreadable;
-        status.trouble = Some(error);
     }
-    status
 }
 
-fn look(status: &mut RunStatus) -> Result<(), String> {
-    let words = |error: SingleError| error.to_string();
-    let folder = &status.folder;
-    if let Some(outcome) = summary(folder).map_err(words)? {
+/// A run that is looked at.
+#[derive(Debug)]
+struct Watched {
+    /// What is known of it without its folder.
+    waiting: RunStatus,
+    status: RunStatus,
+    /// The files that tell its results, once it is over, as they were read.
+    results: [Option<Stamp>; 2],
+    /// While it is not.
+    follower: Option<Followed>,
+}
+
+impl Watched {
+    fn of(waiting: RunStatus) -> Self {
+        Self {
+            status: waiting.clone(),
+            waiting,
+            results: [None; 2],
+            follower: None,
+        }
+    }
+
+    fn look(&mut self, now: Instant) -> &RunStatus {
+        let folder = &self.waiting.folder;
+        let results = [SUMMARY, FRESH].map(|name| Stamp::of(&folder.join(name)));
+        let is_over = results[0].is_some();
+        if is_over && results == self.results {
+            return &self.status;
+        }
+        self.results = results;
+        let mut status = self.waiting.clone();
+        let looked = match is_over {
+            true => {
+                self.follower = None;
+                read_results(&mut status).map_err(|error| error.to_string())
+            }
+            false => self.follow(&mut status, now),
+        };
+        if let Err(trouble) = looked {
+            status.stage = Stage::Unreadable;
+            status.trouble = Some(trouble);
+        }
+        self.status = status;
+        &self.status
+    }
+
+    fn follow(&mut self, status: &mut RunStatus, now: Instant) -> Result<(), String> {
+        if !status.folder.join("run.json").is_file() {
+            self.follower = None;
+            return Ok(());
+        }
+        let follower = self
+            .follower
+            .get_or_insert_with(|| Followed::of(&status.folder));
+        follower.look(now).map_err(|error| error.to_string())?;
+        status.generations = follower.generations;
+        status.best_steps.clone_from(&follower.best_steps);
+        status.stage = match follower.life {
+            Life::Computing => Stage::Running,
+            Life::Over => Stage::Evolved,
+            Life::Absent | Life::Silent | Life::Stopped => Stage::Interrupted,
+        };
+        Ok(())
+    }
+}
+
+/// Reads how a run ended that is over.
+fn read_results(status: &mut RunStatus) -> Result<(), SingleError> {
+    if let Some(outcome) = summary(&status.folder)? {
         status.generations = outcome.generations;
         status.converged = outcome.converged;
         status.best_steps = outcome.best.iter().map(|best| best.fitness).collect();
-        let fresh = fresh(folder).map_err(words)?;
+        let fresh = fresh(&status.folder)?;
         status.stage = match &fresh {
             Some(_) => Stage::Done,
             None => Stage::Evolved,
         };
         status.fresh_steps = fresh.map(|fresh| fresh.evaluation.mean);
-        return Ok(());
     }
-    if !folder.join("run.json").is_file() {
-        return Ok(());
-    }
-    let recording = Recording::read(folder).map_err(|error| error.to_string())?;
-    for event in &recording.events {
-        if let Event::Generation(record) = event {
-            status.generations = record.generation;
+    Ok(())
+}
+
+/// A run that is followed from generation to generation.
+#[derive(Debug)]
+struct Followed {
+    follower: Follower,
+    generations: u64,
+    best_steps: Vec<f64>,
+    life: Life,
+}
+
+impl Followed {
+    fn of(folder: &Path) -> Self {
+        Self {
+            follower: Follower::of(folder),
+            generations: 0,
+            best_steps: Vec::new(),
+            life: Life::Stopped,
         }
     }
-    status.best_steps = best_steps(&recording.events);
-    status.stage = match recording.life {
-        Life::Computing => Stage::Running,
-        Life::Over => Stage::Evolved,
-        Life::Absent | Life::Silent | Life::Stopped => Stage::Interrupted,
-    };
-    Ok(())
+
+    fn look(&mut self, now: Instant) -> Result<(), RunError> {
+        let mut all = Vec::new();
+        let looked = self.follower.try_look(now, &mut all);
+        for news in all {
+            match news {
+                News::Run(_) => (self.generations, self.best_steps) = (0, Vec::new()),
+                News::Event(Event::Generation(record)) => {
+                    self.generations = record.generation;
+                    self.best_steps.extend(record.mean_trial_steps(1));
+                }
+                News::Life(life) => self.life = life,
+                News::Event(_) | News::Trouble(_) => {}
+            }
+        }
+        looked
+    }
 }
 
 /// Mean time steps of a scored trial of the best individual of the run in a folder,
@@ -149,13 +254,10 @@ fn look(status: &mut RunStatus) -> Result<(), String> {
 /// # Errors
 /// When the folder holds no run, or its log cannot be read.
 pub fn course(folder: &Path) -> Result<Vec<f64>, RunError> {
-    Recording::read(folder).map(|recording| best_steps(&recording.events))
-}
-
-fn best_steps(events: &[Event]) -> Vec<f64> {
-    let steps = events.iter().filter_map(|event| match event {
+    let recording = Recording::read(folder)?;
+    let steps = recording.events.iter().filter_map(|event| match event {
         Event::Generation(record) => record.mean_trial_steps(1),
         _ => None,
     });
-    steps.collect()
+    Ok(steps.collect())
 }

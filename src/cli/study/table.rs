@@ -17,7 +17,7 @@ use crate::dashboard::terminal::Terminal;
 use crate::dashboard::{RunRow, RunsNews, Standing};
 use crate::lab::specimen::bench;
 use crate::lab::{Life, Recording, Watch};
-use crate::report::{RunStatus, Stage, Study, course, status};
+use crate::report::{RunStatus, Stage, StatusWatch, Study, course};
 
 /// Time between two looks at the study's folder, at least.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
@@ -99,9 +99,12 @@ impl Looks {
         thread::Builder::new()
             .name(String::from("study"))
             .spawn(move || {
-                let mut past = HashMap::new();
+                let (mut past, mut watch) = (HashMap::new(), StatusWatch::of(&study));
                 // Nobody looks at the folders while nobody takes what was seen.
-                while sender.send(look(&study, &mut past, own())).is_ok() {
+                while sender
+                    .send(look(&study, watch.look(), &mut past, own()))
+                    .is_ok()
+                {
                     if stopped.recv_timeout(interval) != Err(RecvTimeoutError::Timeout) {
                         return;
                     }
@@ -111,10 +114,16 @@ impl Looks {
     }
 }
 
-/// The runs as they are now, with what this program does; `past` keeps the courses of those that are over, by number.
-fn look(study: &Study, past: &mut HashMap<usize, Vec<f64>>, own: Own) -> RunsNews {
+/// The runs as they are `now`, with what this program does; `past` keeps the courses of those
+/// that are over, by number.
+fn look(
+    study: &Study,
+    now: Vec<RunStatus>,
+    past: &mut HashMap<usize, Vec<f64>>,
+    own: Own,
+) -> RunsNews {
     let begun = Instant::now();
-    let rows = status(study).into_iter().map(|status| {
+    let rows = now.into_iter().map(|status| {
         let is_over = matches!(status.stage, Stage::Done | Stage::Evolved);
         if !is_over {
             past.remove(&status.number);
