@@ -61,6 +61,9 @@ pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &Ho
     if goes_on(exit, &ended, how.on_hangup, || run.controls.resume()) {
         headless(&run, signals, &ended, survives)?;
     } else {
+        if exit == Some(Exit::Left) {
+            ended.by_hand();
+        }
         run.controls.stop();
     }
     let scenario = run.scenario.clone();

@@ -53,7 +53,13 @@ Begin with:
   maxq-lab scenarios                        what there is to run
   maxq-lab run smoke                        the whole method, in less than a second
   maxq-lab run environment-1                an experiment of the thesis
-  maxq-lab evaluate environment-1 --tree '(Root Wander ApproachBattery ApproachNest)'";
+  maxq-lab evaluate environment-1 --tree '(Root Wander ApproachBattery ApproachNest)'
+
+Exit status:
+  0      done, or handed over to another process
+  1      an error, told on standard error
+  2      wrong arguments
+  128+N  ended by signal N, 130 by hand too: what was begun is saved, and can be gone on with";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -100,6 +100,12 @@ impl Ended {
         self.signal.store(signal, Ordering::SeqCst);
     }
 
+    /// A person ended the program, as Ctrl-C would: who waits for work that was not done, a
+    /// script say, must not take it for done.
+    pub(super) fn by_hand(&self) {
+        self.by(SIGINT);
+    }
+
     /// The exit code that tells which signal ended the program: 128 and its number.
     pub(super) fn exit_code(&self) -> Option<u8> {
         match self.signal.load(Ordering::SeqCst) {

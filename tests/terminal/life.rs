@@ -1,7 +1,7 @@
 //! Start, pause, look, step, resize, leave.
 
 use crate::pty::{Pty, program};
-use crate::{ENDLESS, Place, exists, wait_for_end};
+use crate::{BY_HAND, ENDLESS, Place, exists, leave, wait_for_end};
 
 #[test]
 fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
@@ -27,9 +27,7 @@ fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
     pty.wait_for("Save the run and leave?");
     pty.press("n");
     pty.wait_gone("Save the run and leave?");
-    pty.press("qy");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    leave(&mut pty);
     pty.wait_for("go on with: maxq-lab resume");
     place.assert_saved();
 
@@ -38,7 +36,7 @@ fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
         Place::generation(pty) > Some(before + 1)
     });
     pty.press("\u{3}y");
-    wait_for_end(&mut pty, 0);
+    wait_for_end(&mut pty, BY_HAND);
     pty.wait_given_back();
     place.assert_saved();
 }
@@ -59,9 +57,7 @@ fn the_dashboard_follows_the_size_of_the_window() {
     pty.wait_for("too small");
     pty.resize(120, 40);
     pty.wait_for("RUNNING");
-    pty.press("qy");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    leave(&mut pty);
 }
 
 #[test]
@@ -85,9 +81,7 @@ fn the_mouse_is_taken_when_it_is_asked_for_and_given_back() {
     let mut pty = place.start(&["--mouse"]);
     assert!(mouse(&pty));
     pty.press("\u{1b}[<65;10;10M");
-    pty.press("qy");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    leave(&mut pty);
 
     let place = Place::new();
     let mut pty = place.start(&[]);

@@ -109,9 +109,19 @@ impl Place {
 }
 
 /// What a program said last.
+/// The exit code of work that a person has stopped before it was done, as by Ctrl-C.
+const BY_HAND: u32 = 130;
+
 fn wait_for_end(pty: &mut Pty, code: u32) {
     let status = pty.ended();
     assert_eq!(status.exit_code(), code, "{}", pty.screen());
+}
+
+/// Answers that the run is to be saved and left.
+fn leave(pty: &mut Pty) {
+    pty.press("qy");
+    wait_for_end(pty, BY_HAND);
+    pty.wait_given_back();
 }
 
 fn exists(folder: &Path, name: &str) -> bool {

@@ -6,7 +6,7 @@ use maxq_lab::scenario::EMBEDDED;
 
 use crate::common::program as plain_program;
 use crate::pty::{Pty, program};
-use crate::{ENDLESS, Place, wait_for_end, wait_until};
+use crate::{ENDLESS, Place, leave, wait_for_end, wait_until};
 
 fn headless(place: &Place) -> Child {
     let mut command = plain_program();
@@ -79,8 +79,7 @@ fn a_dead_run_is_replayed() {
 fn a_view_in_which_nothing_moves_sends_nothing() {
     let place = Place::new();
     let mut run = place.start(&[]);
-    run.press("qy");
-    wait_for_end(&mut run, 0);
+    leave(&mut run);
     let mut pty = place.on("replay");
     pty.wait_for("UNFINISHED");
     pty.press(" ");

@@ -5,7 +5,7 @@ use portable_pty::CommandBuilder;
 
 use crate::common::wait_until;
 use crate::pty::{Pty, in_environment, program};
-use crate::{ENDLESS, Place, exists, wait_for_end};
+use crate::{ENDLESS, Place, exists, leave, wait_for_end};
 
 #[test]
 fn a_signal_saves_the_run_and_gives_the_terminal_back() {
@@ -78,8 +78,7 @@ fn when_the_line_drops_the_run_is_saved_if_that_is_wanted() {
 fn nobody_spins_when_the_terminal_has_gone() {
     let place = Place::new();
     let mut run = place.start(&[]);
-    run.press("qy");
-    wait_for_end(&mut run, 0);
+    leave(&mut run);
     for command in ["replay", "watch"] {
         let mut pty = place.on(command);
         pty.wait_for("smoke");

@@ -8,7 +8,7 @@ use maxq_lab::report::{Arm, Base, Plan, Study};
 
 use crate::common::{SHORT, program as plain_program};
 use crate::pty::{Pty, program};
-use crate::{ENDLESS, wait_for_end, wait_until};
+use crate::{BY_HAND, ENDLESS, wait_for_end, wait_until};
 
 /// The folder of a study of an arm with settings.
 fn create(settings: &[&str], seeds: &str, folder: &str) -> Study {
@@ -143,7 +143,7 @@ fn who_leaves_a_study_is_asked_what_becomes_of_it() {
     pty.press("q");
     pty.wait_for("Stop them?");
     pty.press("y");
-    wait_for_end(&mut pty, 0);
+    wait_for_end(&mut pty, BY_HAND);
     pty.wait_given_back();
     pty.wait_for("0 of 1 runs done");
 

@@ -105,6 +105,11 @@ impl Progress {
         self.state().is_over = true;
     }
 
+    /// Whether the work is over.
+    pub(super) fn is_over(&self) -> bool {
+        self.state().is_over
+    }
+
     /// What this program does now.
     pub(super) fn own(&self) -> Own {
         let state = self.state();

@@ -82,6 +82,9 @@ fn follow(
         signals.stop(ended, survives, move || stopping.controls.stop())?;
         work.progress.appear();
     } else {
+        if exit == Some(Exit::Left) && !work.progress.is_over() {
+            ended.by_hand();
+        }
         work.controls.stop();
     }
     Ok(exit)
@@ -113,7 +116,7 @@ fn conclude(
             "the others are done by another process; 'study status' tells how far it is",
         );
     }
-    if let Some(code) = ended.exit_code().filter(|_| left > 0) {
+    if let Some(code) = ended.exit_code().filter(|_| left > failed) {
         return Ok(ExitCode::from(code));
     }
     match failed > 0 || exit == Some(Exit::Panicked) {
