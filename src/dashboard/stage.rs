@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::evolution::State;
 use crate::hierarchy::Tree;
-use crate::lab::specimen::{Bench, Rollout, Specimen, Start, StepTrace};
+use crate::lab::specimen::{Bench, PolicyMap, Rollout, Specimen, Start, StepTrace};
 
 /// Speeds of a rollout: times real time.
 pub const SPEEDS: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
@@ -46,6 +46,13 @@ impl fmt::Display for Subject {
     }
 }
 
+/// A step that was recorded.
+struct Recorded {
+    trace: StepTrace,
+    /// What the agent would do in each cell after it; `None` where the world has no cells.
+    cells: Option<PolicyMap>,
+}
+
 /// A rollout of the individual that is looked at, on a copy with a random stream of its
 /// own: watching never touches evolution.
 pub struct Stage {
@@ -56,8 +63,8 @@ pub struct Stage {
     refused: Option<(u64, String)>,
     subject: Option<Subject>,
     rollout: Option<Box<dyn Rollout>>,
-    /// Steps that were recorded, the latest first.
-    traces: VecDeque<StepTrace>,
+    /// The latest first.
+    recorded: VecDeque<Recorded>,
     number: u64,
     /// Where trials begin, if the person has said so.
     start: Option<Start>,
@@ -77,7 +84,7 @@ impl Stage {
             refused: None,
             subject: None,
             rollout: None,
-            traces: VecDeque::new(),
+            recorded: VecDeque::new(),
             number: 0,
             start: None,
             halted: false,
@@ -122,13 +129,20 @@ impl Stage {
     /// runs, one step a frame is recorded.
     #[must_use]
     pub fn trace(&self, back: usize) -> Option<&StepTrace> {
-        self.traces.get(back)
+        Some(&self.recorded.get(back)?.trace)
+    }
+
+    /// What the agent would do in each cell, with what it had learned by the end of that step,
+    /// all but its place being as it was then; `None` where the world has no cells.
+    #[must_use]
+    pub fn cells(&self, back: usize) -> Option<&PolicyMap> {
+        self.recorded.get(back)?.cells.as_ref()
     }
 
     /// How many steps are recorded.
     #[must_use]
     pub fn traces(&self) -> usize {
-        self.traces.len()
+        self.recorded.len()
     }
 
     /// Where the agent has been in the trial of a recorded step, up to that step, the latest
@@ -144,7 +158,7 @@ impl Stage {
             let until = status.trail.len().saturating_sub(later);
             return status.trail.iter().take(until).copied().collect();
         }
-        let before = self.traces.iter().skip(back);
+        let before = self.recorded.iter().skip(back).map(|step| &step.trace);
         let trial = before.take_while(|before| before.trial == trace.trial);
         let mut trail: Vec<_> = trial
             .flat_map(|step| [step.after.at, step.before.at])
@@ -198,10 +212,13 @@ impl Stage {
     }
 
     fn record(&mut self) {
-        let trace = self.rollout.as_mut().and_then(|rollout| rollout.step());
-        if let Some(trace) = trace {
-            self.traces.truncate(RECORDED - 1);
-            self.traces.push_front(trace);
+        let Some(rollout) = &mut self.rollout else {
+            return;
+        };
+        if let Some(trace) = rollout.step() {
+            let cells = rollout.cells();
+            self.recorded.truncate(RECORDED - 1);
+            self.recorded.push_front(Recorded { trace, cells });
         }
     }
 
@@ -288,7 +305,7 @@ impl Stage {
             .specimen()
             .map(|specimen| bench.rollout(specimen, number, start));
         self.rollout = rollout;
-        self.traces.clear();
+        self.recorded.clear();
         self.owed = 0.0;
         self.shown_for = Duration::ZERO;
         self.held_for = Duration::ZERO;
@@ -324,11 +341,7 @@ impl Stage {
         }
         for _ in 0..steps {
             self.record();
-            if self
-                .traces
-                .front()
-                .is_some_and(|trace| trace.ended.is_some())
-            {
+            if self.trace(0).is_some_and(|trace| trace.ended.is_some()) {
                 break;
             }
         }

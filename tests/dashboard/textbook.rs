@@ -7,7 +7,7 @@ use maxq_lab::lab::specimen::Start;
 use maxq_lab::scenario::Scenario;
 
 use super::frames::assert_looks;
-use super::recorded::{Recorded, cells};
+use super::recorded::{Recorded, Screen, cells};
 
 const HAND_MADE: &str = "(Root (Get (NavigateToPassenger North South East West) Pickup) \
      (Put (NavigateToDestination North South East West) Putdown))";
@@ -118,6 +118,48 @@ fn values_and_greedy_actions_stand_in_the_cells() {
         .unwrap();
     assert!((cells.cell(0, 1).unwrap().value - 10.0).abs() < 0.001);
     assert!(screen.text().contains(" 10.0"), "{}", screen.text());
+}
+
+/// The cells of the stepper are as they were learned by the end of the step shown, however far
+/// the rollout has gone on, and the screen says so.
+#[test]
+fn the_stepper_shows_the_cells_of_its_step() {
+    let unlearned = cells("cliff");
+    let mut screen = unlearned.screen("dark", Unicode, (120, 40));
+    screen.press("t .");
+    let number = |screen: &Screen| {
+        let text = screen.text();
+        let after = text.split("cells: V after step ").nth(1);
+        let after = after.unwrap_or_else(|| panic!("{text}"));
+        after
+            .split_whitespace()
+            .next()
+            .unwrap()
+            .parse::<u32>()
+            .unwrap()
+    };
+    let values = |screen: &Screen, back: usize| {
+        let cells = screen.0.app().desk().stage.cells(back).unwrap();
+        cells
+            .cells
+            .iter()
+            .flatten()
+            .map(|cell| cell.value.to_bits())
+            .collect::<Vec<_>>()
+    };
+    let (first, frame) = (values(&screen, 0), screen.text());
+    let step = number(&screen);
+    screen.press(". . . . . . . .");
+    assert_eq!(number(&screen), step + 8);
+    assert_ne!(values(&screen, 0), first, "it has learned since");
+    screen.press(", , , , , , , ,");
+    assert_eq!(number(&screen), step);
+    assert_eq!(values(&screen, 8), first);
+    let arena = |text: &str| -> Vec<String> {
+        let rows = text.lines().skip(2).take(30);
+        rows.map(|row| row.chars().take(48).collect()).collect()
+    };
+    assert_eq!(arena(&screen.text()), arena(&frame));
 }
 
 /// A world of cells that is not the taxi's, wider than high, with a cliff in it.

@@ -85,13 +85,23 @@ pub(super) fn draw_lines(
     for (row, line) in lines.iter().skip(from).take(area.height.into()).enumerate() {
         let y = area.y + row as u16;
         buffer.set_line(area.x, y, line, area.width);
-        if line.width() > usize::from(area.width) && area.width > 0 {
+        if written(line) > usize::from(area.width) && area.width > 0 {
             let style = look.style(Paint::Dim);
             buffer.set_string(area.right() - 1, y, look.signs.ellipsis, style);
         }
     }
     let below = lines.len().saturating_sub(from + usize::from(area.height));
     mark_more(look, [from, below], area, buffer);
+}
+
+/// Columns of a line without the blanks that it ends with.
+fn written(line: &Line<'_>) -> usize {
+    let text: String = line
+        .spans
+        .iter()
+        .map(|span| span.content.as_ref())
+        .collect();
+    width(text.trim_end())
 }
 
 /// Says how many lines there are above an area, and below.

@@ -211,6 +211,7 @@ impl View for Stepper {
             return String::new();
         };
         let state = match (desk.stage.halted(), self.back) {
+            (_, 1) => String::from("1 step back"),
             (_, back) if back > 0 => format!("{back} steps back"),
             (true, _) => String::from("halted"),
             (false, _) => format!("{}x", desk.stage.speed()),
@@ -229,11 +230,13 @@ impl View for Stepper {
                 None => nobody(desk, area, buffer),
             };
         };
-        let rows = shown.trace.after.readings.len() + 2;
+        let grid = desk.scenery().grid.is_some();
+        let rows = shown.trace.after.readings.len() + 2 + usize::from(grid);
         let areas = Areas::of(area, u16::try_from(rows).unwrap_or(u16::MAX));
         let scene = Scene {
             snapshot: Some(&shown.trace.after),
             trail: desk.stage.trail(self.back),
+            cells: desk.stage.cells(self.back),
             ..Scene::default()
         };
         draw_scene(desk, &scene, areas.arena, buffer);
@@ -303,6 +306,7 @@ impl View for Stepper {
          primitive subtask acts by Q. Below it, what came of it, from the innermost subtask\n\
          outwards: the pseudo-reward, C~ and C of the child that returned, and the errors of\n\
          the updates, N time steps back (Thesis Algorithm 2.4, Equations 3.4 and 3.5).\n\
+         In worlds of cells the cells show V(root) and the greedy actions after the step.\n\
          \n\
          The rollout learns on a copy: nothing here touches evolution."
     }

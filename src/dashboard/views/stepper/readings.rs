@@ -47,6 +47,11 @@ pub(super) fn lines(desk: &Desk, shown: &Shown<'_>, columns: usize) -> Vec<Line<
     if let Some(case) = case(desk, &trace.after) {
         lines.push(Pen::new(shown.look).text(case, Paint::Notice).line());
     }
+    if desk.scenery().grid.is_some() {
+        // Beside them stands what was the case before the step's lessons.
+        let text = format!("cells: V after step {}", trace.step);
+        lines.push(Pen::new(shown.look).text(text, Paint::Dim).line());
+    }
     if let Some(carried) = &trace.after.carries {
         let text = format!("carries {carried}");
         lines.push(Pen::new(shown.look).text(text, Paint::Object).line());

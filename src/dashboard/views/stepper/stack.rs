@@ -10,6 +10,9 @@ use crate::learning::{ActionChoice, Choice, Explanation, Level, Rule};
 /// Columns below which numbers have a digit less.
 const NARROW: usize = 60;
 
+/// Columns of a name in short.
+const SHORT: usize = 9;
+
 /// How wide the parts of a line are.
 #[derive(Clone, Copy)]
 struct Widths {
@@ -100,32 +103,36 @@ fn title(
         .text(shown.name(level.node), Paint::Title)
         .text(value, Paint::Title)
         .text(tau, paint);
-    let [long, short] = how(shown, level);
     let room = columns.saturating_sub(pen.column());
-    let how = if width(&long) <= room { long } else { short };
-    pen.text(how, paint).line()
+    let ways = how(shown, level);
+    let how = ways.iter().find(|way| width(way) <= room);
+    pen.text(how.unwrap_or(&ways[2]).as_str(), paint).line()
 }
 
-/// How a node chose, in words and in short.
-fn how(shown: &Shown<'_>, level: &Level) -> [String; 2] {
+/// How a node chose: in words, in short, in the shortest way.
+fn how(shown: &Shown<'_>, level: &Level) -> [String; 3] {
     let epsilon = shown.look.signs.epsilon;
-    let [long, short] = match (level.chose, level.rule) {
+    let (long, short) = match (level.chose, level.rule) {
         (false, _) => {
             let active = shown.name(level.active);
-            let short = shortened(active, 9, shown.look.signs);
-            return [format!("goes on with {active}"), format!("on with {short}")];
+            let short = shortened(active, SHORT, shown.look.signs);
+            (format!("goes on with {active}"), format!("on with {short}"))
         }
-        (true, Rule::OnlyChoice) => ["has one choice", "one choice"].map(String::from),
-        (true, Rule::Uniform) => ["chooses at random", "at random"].map(String::from),
-        (true, Rule::Softmax) => ["chooses by softmax", "softmax"].map(String::from),
-        (true, Rule::EpsilonGreedy) => [
+        (true, Rule::OnlyChoice) => (String::from("has one choice"), String::from("one choice")),
+        (true, Rule::Uniform) => (String::from("chooses at random"), String::from("at random")),
+        (true, Rule::Softmax) => (String::from("chooses by softmax"), String::from("softmax")),
+        (true, Rule::EpsilonGreedy) => (
             format!("chooses {epsilon}-greedily"),
             format!("{epsilon}-greedy"),
-        ],
+        ),
     };
     match level.invoked {
-        true => [format!("invoked, {long}"), format!("new, {short}")],
-        false => [long, short],
+        true => [
+            format!("invoked, {long}"),
+            format!("invoked, {short}"),
+            short,
+        ],
+        false => [long, short.clone(), short],
     }
 }
 
