@@ -9,6 +9,7 @@ use ratatui::layout::Rect;
 use super::desk::{Chosen, Desk};
 use super::export;
 use super::header;
+use super::hints::useful;
 use super::input::{Effect, Input};
 use super::keys::{Action, Key, Scope};
 use super::look::{Look, Paint, put};
@@ -391,10 +392,9 @@ impl App {
             }
             view => self.draw_panel(view, body(area), false, buffer),
         }
-        let hints = self
-            .view_of(self.active())
-            .map_or(&[][..], |view| view.hints());
-        header::hint_bar(desk, self.view, hints, area, buffer);
+        let hints = self.view_of(self.active());
+        let hints = hints.map_or(Vec::new(), |active| useful(desk, self.view, active));
+        header::hint_bar(desk, &hints, area, buffer);
         if let Some(open) = &self.overlay {
             overlay::draw(open, desk, self.view, &self.lessons(), area, buffer);
         }

@@ -38,7 +38,7 @@ pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, area: Rect, buffer: &mu
         let cell = scene.cells.and_then(|map| map.cell(column, row));
         let share = cell
             .zip(values)
-            .map(|(cell, [low, high])| (cell.value - low) / (high - low).max(f32::MIN_POSITIVE));
+            .map(|(cell, range)| share(cell.value, range));
         if let Some(share) = share {
             buffer.set_style(
                 place.intersection(buffer.area),
@@ -61,6 +61,16 @@ pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, area: Rect, buffer: &mu
     }
     lattice.draw_walls(look, &scenery.walls, buffer);
     lattice.draw_trail(look, &scene.trail, buffer);
+}
+
+/// Where a value stands between the lowest, 0, and the highest, 1: in the middle where all are
+/// the same but for what single precision makes of them.
+pub(super) fn share(value: f32, [low, high]: [f32; 2]) -> f32 {
+    let noise = 8.0 * f32::EPSILON * low.abs().max(high.abs());
+    match high - low > noise.max(f32::MIN_POSITIVE) {
+        true => (value - low) / (high - low),
+        false => 0.5,
+    }
 }
 
 /// Digits after the point of the values; `None` where cells have room for no more than one
@@ -180,5 +190,21 @@ impl Content<'_> {
         for (sign, style) in &self.signs[skipped..] {
             column = put(buffer, place, (column, 0), sign, *style);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_that_are_the_same_but_for_noise_are_neither_low_nor_high() {
+        assert_eq!(share(-1.0, [-2.0, 0.0]), 0.5);
+        assert_eq!(
+            (share(-2.0, [-2.0, 0.0]), share(0.0, [-2.0, 0.0])),
+            (0.0, 1.0)
+        );
+        assert_eq!(share(0.0, [0.0, 1e-42]), 0.5);
+        assert_eq!(share(7.0, [7.0, 7.0 + 7.0 * f32::EPSILON]), 0.5);
     }
 }

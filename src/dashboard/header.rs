@@ -4,27 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use super::desk::{Activity, Desk, Mode};
-use super::keys::{Action, KeyMap};
+use super::hints;
+use super::keys::Action;
 use super::look::{Look, Paint, fitted, fitted_parts, one_line, put, width};
 use super::views::ViewId;
-
-/// Actions that lead around the overview.
-const AROUND: &[Action] = &[Action::NextPanel, Action::Open];
-
-/// Actions that a hint bar names after those of the view.
-const COMMON: &[Action] = &[
-    Action::Pause,
-    Action::StepGeneration,
-    Action::Freeze,
-    Action::Earlier,
-    Action::Later,
-    Action::Export,
-];
-
-/// Actions that every hint bar ends with.
-pub(super) const ALWAYS: &[Action] = &[Action::Help, Action::Quit];
-/// The same where there is somewhere to go back to.
-const ALWAYS_WITHIN: &[Action] = &[Action::Help, Action::Back];
 
 /// Draws the first line: the run, what it is doing, and the view.
 ///
@@ -109,33 +92,20 @@ fn marks(desk: &Desk) -> Vec<String> {
 }
 
 /// Draws the last line: a message, or what keys do.
-pub(super) fn hint_bar(
-    desk: &Desk,
-    view: ViewId,
-    hints: &[Action],
-    area: Rect,
-    buffer: &mut Buffer,
-) {
+pub(super) fn hint_bar(desk: &Desk, hints: &[Action], area: Rect, buffer: &mut Buffer) {
     let line = last_line(area);
     if let Some(text) = desk.message() {
         return put_message(&desk.look, text, line, buffer);
     }
-    let always = match desk.within {
-        true => ALWAYS_WITHIN,
-        false => ALWAYS,
+    let named = |actions: &[Action]| -> Vec<Hint> {
+        let hints = actions.iter().filter_map(|&action| {
+            let (keys, _) = desk.keys.hint(action, desk.look.signs)?;
+            Some((keys, hints::word(desk, action)))
+        });
+        hints.collect()
     };
-    let order = match view {
-        ViewId::Overview => [AROUND, COMMON, hints],
-        _ => [hints, &[Action::Back], COMMON],
-    };
-    let mut actions: Vec<_> = always.to_vec();
-    for &action in order.into_iter().flatten() {
-        if is_useful(desk.mode, action) && !actions.contains(&action) {
-            actions.push(action);
-        }
-    }
-    let useful = actions.into_iter().skip(always.len());
-    put_hints(&desk.look, &desk.keys, useful, always, line, buffer);
+    let always = named(hints::always(desk));
+    put_hints(&desk.look, &named(hints), &always, line, buffer);
 }
 
 /// The last line of an area.
@@ -157,42 +127,28 @@ pub(super) fn put_message(look: &Look, text: &str, line: Rect, buffer: &mut Buff
 /// always named, help and the way out.
 pub(super) fn put_hints(
     look: &Look,
-    keys: &KeyMap,
-    actions: impl Iterator<Item = Action>,
-    always: &[Action],
+    hints: &[Hint],
+    always: &[Hint],
     line: Rect,
     buffer: &mut Buffer,
 ) {
-    let hint = |action| keys.hint(action, look.signs);
-    let always: Vec<_> = always.iter().filter_map(|&action| hint(action)).collect();
     let right: u16 = always.iter().map(columns).sum();
     let right = line.width.saturating_sub(right);
     let mut column = 0;
-    for pair in actions.filter_map(hint) {
-        if column + columns(&pair) > right {
+    for pair in hints {
+        if column + columns(pair) > right {
             break;
         }
-        column = put_hint(look, line, column, &pair, buffer);
+        column = put_hint(look, line, column, pair, buffer);
     }
     let mut column = right;
-    for pair in &always {
+    for pair in always {
         column = put_hint(look, line, column, pair, buffer);
     }
 }
 
-/// Whether an action can do something to a run that is shown in this way.
-fn is_useful(mode: Mode, action: Action) -> bool {
-    match action {
-        Action::Pause | Action::StepGeneration | Action::Checkpoint | Action::Stop => {
-            mode == Mode::Live
-        }
-        Action::Freeze => mode != Mode::Replay,
-        _ => true,
-    }
-}
-
 /// A key and what it does.
-type Hint = (String, &'static str);
+pub(super) type Hint = (String, &'static str);
 
 /// Columns that a hint takes, two of them empty.
 fn columns((key, hint): &Hint) -> u16 {

@@ -16,6 +16,7 @@
 //! | `stage` | the rollout of the individual that is looked at |
 //! | `keys` | actions, keys, and which key does what: one list for input, hints and help |
 //! | `mouse` | what clicks and the wheel do |
+//! | `hints` | which actions the last line names |
 //! | `look` | themes, signs, lines of text, the canvas that arenas are drawn on |
 //! | `scene`, `cells`, `lattice` | worlds, drawn: in their true proportions, or cell by cell |
 //! | `views` | one file a view; a view in a corner of the overview is a panel |
@@ -33,6 +34,7 @@ mod config;
 mod desk;
 mod export;
 mod header;
+mod hints;
 mod input;
 pub mod keys;
 mod lattice;

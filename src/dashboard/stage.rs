@@ -197,6 +197,13 @@ impl Stage {
         SPEEDS[self.speed.min(SPEEDS.len() - 1)]
     }
 
+    /// Whether it can be made faster, or slower.
+    #[must_use]
+    pub fn can_change_speed(&self, faster: bool) -> bool {
+        let end = if faster { SPEEDS.len() - 1 } else { 0 };
+        self.speed != end
+    }
+
     /// Makes the rollout faster, or slower.
     pub fn change_speed(&mut self, faster: bool) {
         self.speed = match faster {

@@ -60,8 +60,8 @@ pub struct Signs {
     pub frozen: &'static str,
     /// A text was cut here.
     pub ellipsis: &'static str,
-    /// Minus, plus or minus, approximately: where words would be long.
-    pub minus: &'static str,
+    /// About: before a number that is not quite it.
+    pub about: &'static str,
     /// Between parts of a line.
     pub separator: &'static str,
     /// Points of the best, the middle, the worst where cells cannot be divided.
@@ -110,7 +110,7 @@ pub static UNICODE: Signs = Signs {
     stopped: "■",
     frozen: "✱",
     ellipsis: "…",
-    minus: "−",
+    about: "≈",
     separator: "·",
     series: ["●", "○", "×"],
     cursor: "│",
@@ -162,7 +162,7 @@ pub static ASCII: Signs = Signs {
     stopped: "[]",
     frozen: "*",
     ellipsis: "~",
-    minus: "-",
+    about: "~",
     separator: "|",
     series: ["*", "o", "x"],
     cursor: "|",

@@ -8,7 +8,8 @@ use super::columns::{Column, Placed, place};
 use super::row::{RunRow, Standing};
 use super::work::question;
 use crate::dashboard::app::{SMALLEST, body, too_small};
-use crate::dashboard::header::{ALWAYS, last_line, put_hints, put_message};
+use crate::dashboard::header::{last_line, put_hints, put_message};
+use crate::dashboard::hints::ALWAYS;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, one_line, put, sparkline, width};
 use crate::dashboard::overlay::{Line, line, plain, window};
@@ -67,8 +68,13 @@ impl RunsTable {
         match &self.message {
             Some(text) => put_message(look, text, last_line(area), buffer),
             None => {
-                let hints = HINTS.iter().copied();
-                put_hints(look, &self.keys, hints, ALWAYS, last_line(area), buffer);
+                let named = |actions: &[Action]| -> Vec<_> {
+                    let hints = actions.iter();
+                    hints
+                        .filter_map(|&action| self.keys.hint(action, look.signs))
+                        .collect()
+                };
+                put_hints(look, &named(HINTS), &named(ALWAYS), last_line(area), buffer);
             }
         }
         if let Some(scroll) = self.help {

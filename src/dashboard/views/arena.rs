@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::{View, case};
+use super::{View, case, pace};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Look, Paint, fitted, put, width, wrapped};
@@ -30,17 +30,12 @@ const STATE: usize = 3;
 
 impl View for Arena {
     fn caption(&self, desk: &Desk) -> String {
-        let stage = &desk.stage;
-        let Some(subject) = stage.subject() else {
+        let Some(subject) = desk.stage.subject() else {
             return String::new();
         };
-        let speed = match stage.halted() {
-            true => String::from("halted"),
-            false => format!("{}x", stage.speed()),
-        };
-        let separator = desk.look.signs.separator;
+        let (separator, pace) = (desk.look.signs.separator, pace(desk));
         let (id, generation) = (subject.id, subject.generation);
-        format!("id {id}, gen {generation} {separator} {speed}")
+        format!("id {id}, gen {generation} {separator} {pace}")
     }
 
     fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
@@ -143,6 +138,16 @@ fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut 
     }
     let step = format!("trial {} step {:<4} ", status.trial, status.steps);
     let mut column = put(buffer, area, (0, last), &step, look.style(Paint::Text));
+    if desk.stage.halted() {
+        let halted = "halted ";
+        column = put(
+            buffer,
+            area,
+            (column, last),
+            halted,
+            look.style(Paint::Notice),
+        );
+    }
     let mut before = Some("before ");
     for record in status.history.iter().rev() {
         let (text, paint) = match record.delivered {

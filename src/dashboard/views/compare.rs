@@ -239,6 +239,10 @@ impl View for Compare {
         ]
     }
 
+    fn can(&self, desk: &Desk, action: Action) -> bool {
+        action != Action::Down || desk.rival().is_some()
+    }
+
     /// The selected individual changes by rank.
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
         let by = match action {

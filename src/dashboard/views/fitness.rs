@@ -8,7 +8,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::{THROUGH_TIME, View, nothing_yet, over_generations};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Chart, Curve, Look, Paint, put};
+use crate::dashboard::look::{Chart, Curve, Look, Paint, put, width};
 use crate::evolution::GenerationRecord;
 
 /// Fitness over generations (Thesis Figure 4.8), structural difference below (4.7).
@@ -164,15 +164,27 @@ fn draw_legend(look: &Look, shown: &GenerationRecord, line: Rect, buffer: &mut B
     let Some(steps) = better_half_steps(shown) else {
         return;
     };
-    let mut column = 1;
-    for (index, ((name, paint), steps)) in CURVES.iter().zip(steps).enumerate() {
-        // Where curves are drawn with signs, the legend says whose sign is which.
+    let room = usize::from(line.width.saturating_sub(1));
+    // Where curves are drawn with signs, the legend says whose sign is which.
+    let entry = |index: usize, digits: usize| {
         let sign = match look.signs.dots {
             true => String::new(),
             false => format!("{} ", look.signs.series[(2 - index) % 3]),
         };
-        let digits = usize::from(steps < 100.0);
-        let text = format!("{sign}{name} {steps:.digits$}");
-        column = put(buffer, line, (column, 0), &text, look.style(*paint)) + 2;
+        format!("{sign}{} {:.digits$}", CURVES[index].0, steps[index])
+    };
+    let entries = |digits: usize| [0, 1, 2].map(|index| entry(index, digits));
+    let needed =
+        |entries: &[String; 3]| entries.iter().map(|entry| width(entry) + 2).sum::<usize>();
+    let mut entries = entries(usize::from(steps[2] < 100.0));
+    if needed(&entries) > room + 2 {
+        entries = [0, 1, 2].map(|index| entry(index, 0));
+    }
+    let mut column = 1;
+    for (entry, (_, paint)) in entries.iter().zip(CURVES) {
+        if usize::from(column) + width(entry) > room + 1 {
+            break;
+        }
+        column = put(buffer, line, (column, 0), entry, look.style(paint)) + 2;
     }
 }

@@ -159,14 +159,29 @@ pub(super) fn fixed(value: f32, decimals: usize) -> String {
     }
 }
 
-/// Two values with as many digits as tell them apart.
-pub(super) fn told_apart(one: f32, other: f32) -> [String; 2] {
-    let texts = |decimals| [one, other].map(|value| fixed(value, decimals));
-    let mut some = (decimals([one, other])..=6).map(texts);
+/// Values smaller than this are nothing beside rewards: what is left of a value that has
+/// decayed for hundreds of updates.
+pub(super) const TINY: f32 = 1e-9;
+
+/// Whether a value is nothing beside rewards, but not zero.
+pub(super) fn is_tiny(value: f32) -> bool {
+    value != 0.0 && value.abs() < TINY
+}
+
+/// Two values with as many digits as tell them apart; those that are tiny as `nothing`.
+pub(super) fn told_apart(one: f32, other: f32, nothing: &str) -> [String; 2] {
+    let values = [one, other];
+    let text = |value: f32, decimals| match is_tiny(value) {
+        true => nothing.to_owned(),
+        false => fixed(value, decimals),
+    };
+    let texts = |decimals| values.map(|value| text(value, decimals));
+    let mut some = (decimals(values)..=6).map(texts);
     let apart = some.find(|[one, other]| one != other);
     apart.unwrap_or_else(|| match one.abs().max(other.abs()) {
-        size if size < 1e-6 => [one, other].map(|value| format!("{value:.1e}")),
-        _ => [one, other].map(|value| format!("{value:e}")),
+        size if size < TINY => texts(decimals([0.0])),
+        size if size < 1e-6 => values.map(|value| format!("{value:.1e}")),
+        _ => values.map(|value| format!("{value:e}")),
     })
 }
 
@@ -201,9 +216,12 @@ mod tests {
         assert_eq!(decimals([0.5, -12.0, f32::NAN]), 3);
         assert_eq!((decimals([0.0123]), decimals([])), (4, 5));
         assert_eq!(fixed(-0.00004, 4), "0.0000");
-        assert_eq!(told_apart(-3.50001, -3.50002), ["-3.50001", "-3.50002"]);
-        assert_eq!(told_apart(1.0, 2.0), ["1.000", "2.000"]);
-        assert_eq!(told_apart(5.783e-39, 2.891e-39), ["5.8e-39", "2.9e-39"]);
+        let apart = |one, other| told_apart(one, other, "~0");
+        assert_eq!(apart(-3.50001, -3.50002), ["-3.50001", "-3.50002"]);
+        assert_eq!(apart(1.0, 2.0), ["1.000", "2.000"]);
+        assert_eq!(apart(2.5e-8, 2.4e-8), ["2.5e-8", "2.4e-8"]);
+        assert_eq!(apart(5.783e-39, -2.891e-39), ["~0", "~0"]);
+        assert_eq!(apart(1e-42, -1.0), ["~0", "-1.000"]);
         for value in [f32::MAX, f32::MIN, f32::NAN, f32::MIN_POSITIVE] {
             assert!(number(value).len() <= 8);
         }

@@ -156,6 +156,12 @@ pub(super) trait View: Send {
     /// The actions that the hint bar names, most useful first.
     fn hints(&self) -> &'static [Action];
 
+    /// Whether one of these actions can do something as things are; only asked for what the
+    /// dashboard has nothing against.
+    fn can(&self, _desk: &Desk, _action: Action) -> bool {
+        true
+    }
+
     /// Does what a key asks for; `None` where that is not this view's business.
     fn act(&mut self, _desk: &mut Desk, _action: Action) -> Option<Vec<Effect>> {
         None
@@ -227,6 +233,15 @@ fn over_generations(desk: &Desk, curves: Vec<Curve>, least: [f64; 2]) -> Chart {
         chart.across[1] = axis_end(latest, limit) as f64;
     }
     chart
+}
+
+/// How fast the rollout goes, and whether it does.
+fn pace(desk: &Desk) -> String {
+    let speed = desk.stage.speed();
+    match desk.stage.halted() {
+        true => format!("halted, {speed}x"),
+        false => format!("{speed}x"),
+    }
 }
 
 /// Says why there is no individual to look at.

@@ -62,7 +62,7 @@ pub(in crate::dashboard) fn panels(area: Rect, desk: &Desk) -> Vec<(ViewId, Rect
     let lower = [
         Constraint::Fill(1),
         Constraint::Length(policy_columns(desk, area.width)),
-        Constraint::Length((area.width * 5 / 13).max(POPULATION)),
+        Constraint::Length((area.width * 4 / 13).max(POPULATION)),
     ];
     let [fitness, policy, population] = columns(below, lower);
     vec![

@@ -205,6 +205,9 @@ const SHORT: usize = 8;
 
 /// Name and share, as much of it as there is room for: the share is read off the bar too.
 fn label(desk: &Desk, name: &str, share: f64, room: usize) -> String {
+    if room < 3 {
+        return String::new();
+    }
     let percent = format!(" {}", percent(share));
     let rest = room.saturating_sub(width(&percent));
     let percent = match rest >= width(name).min(SHORT) {

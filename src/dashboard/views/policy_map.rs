@@ -10,6 +10,7 @@ use ratatui::text::Line;
 
 use super::lines::{Pen, draw_lines, number, percent};
 use super::{View, letters, nobody};
+use crate::dashboard::cells::share;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
@@ -64,9 +65,7 @@ impl Map {
     /// What stands for a cell: a digit or a letter, and how it is painted.
     fn sign(&self, desk: &Desk, cell: &PolicyCell, range: [f32; 2]) -> (char, Paint) {
         if self.by_value {
-            let [low, high] = range;
-            let share = (cell.value - low) / (high - low).max(f32::MIN_POSITIVE);
-            let level = (share * 10.0).clamp(0.0, 9.0) as u32;
+            let level = (share(cell.value, range) * 10.0).clamp(0.0, 9.0) as u32;
             let paint = match level {
                 0..=2 => Paint::Worst,
                 3..=6 => Paint::Median,
@@ -276,6 +275,10 @@ impl View for Map {
 
     fn hints(&self) -> &'static [Action] {
         &[Action::Mode, Action::Best, Action::ViewInspector]
+    }
+
+    fn can(&self, _desk: &Desk, action: Action) -> bool {
+        action != Action::Mode || self.made.is_some()
     }
 
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {

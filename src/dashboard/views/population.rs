@@ -294,6 +294,15 @@ impl View for Population {
         &[Action::Down, Action::Open, Action::Sort, Action::Reverse]
     }
 
+    fn can(&self, desk: &Desk, action: Action) -> bool {
+        let individuals = desk.shown().map_or(0, |record| record.individuals.len());
+        match action {
+            Action::Down => individuals > 1,
+            Action::Open => individuals > 0,
+            _ => true,
+        }
+    }
+
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
         let page = i64::from(desk.size.1 / 2).max(1);
         match action {

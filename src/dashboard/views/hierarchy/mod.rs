@@ -7,7 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use super::lines::{last_start, mark_more};
-use super::{View, nothing_yet};
+use super::{View, nothing_yet, pace};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
@@ -40,7 +40,11 @@ impl View for Hierarchy {
         looked_at.map_or(String::new(), |(generation, individual)| {
             let separator = desk.look.signs.separator;
             let (id, rank) = (individual.id, individual.rank);
-            format!("id {id}, gen {generation} {separator} rank {rank}")
+            let pace = match desk.stage.rollout() {
+                Some(_) => format!(" {separator} {}", pace(desk)),
+                None => String::new(),
+            };
+            format!("id {id}, gen {generation} {separator} rank {rank}{pace}")
         })
     }
 
@@ -81,6 +85,15 @@ impl View for Hierarchy {
             Action::StepRollout,
             Action::Best,
         ]
+    }
+
+    fn can(&self, desk: &Desk, action: Action) -> bool {
+        let nodes = desk.looked_at_tree().map_or(0, |tree| tree.nodes().len());
+        match action {
+            Action::Down => nodes > 1,
+            Action::Open => nodes > 0,
+            _ => true,
+        }
     }
 
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {

@@ -6,7 +6,7 @@ use ratatui::layout::Rect;
 use super::values::largest;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put, shortened, width};
-use crate::dashboard::views::lines::number;
+use crate::dashboard::views::lines::{TINY, number};
 use crate::lab::specimen::{Profile, Quantity};
 use crate::worlds::scene::Scale;
 
@@ -20,7 +20,8 @@ fn range(profile: &Profile) -> [f32; 2] {
         [low.min(value), high.max(value)]
     });
     match range {
-        [low, high] if low < high => range,
+        // What differs by less is noise, not a curve.
+        [low, high] if high - low >= TINY => range,
         [low, _] if low.is_finite() => [low - 0.5, low + 0.5],
         _ => [0.0, 1.0],
     }

@@ -255,6 +255,17 @@ impl View for Inspector {
         ]
     }
 
+    fn can(&self, desk: &Desk, action: Action) -> bool {
+        let nodes = desk.stage.tree().map_or(0, |tree| tree.nodes().len());
+        let known = self.known.is_some();
+        match action {
+            Action::Down => nodes > 1,
+            Action::NextPanel => known,
+            Action::Mode => known && self.shelf.has_quantities(),
+            _ => true,
+        }
+    }
+
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
         let scrolls = self.page == Page::Lineage;
         let nodes = desk.stage.tree().map_or(1, |tree| tree.nodes().len());

@@ -44,6 +44,11 @@ impl Shelf {
         self.place = self.place.min(self.places - 1);
     }
 
+    /// Whether there is more than one quantity.
+    pub(super) fn has_quantities(&self) -> bool {
+        self.quantities > 1
+    }
+
     /// Goes on to the next quantity.
     pub(super) fn next_quantity(&mut self) {
         self.quantity = (self.quantity + 1) % self.quantities.max(1);

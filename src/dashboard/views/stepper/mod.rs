@@ -11,7 +11,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::lines::{Pen, draw_lines, last_start};
-use super::{View, nobody};
+use super::{View, nobody, pace};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
@@ -24,7 +24,7 @@ use crate::worlds::{Catalogue, Kind};
 /// One time step of the rollout, from the root's choice to the last update.
 ///
 /// ```text
-///  ╭ Trial stepper  individual 362 · trial 3 · step 41 · halted ─────────────╮
+///  ╭ Trial stepper  trial 3 · step 41 · halted, 10x · individual 362 ────────╮
 ///  │ ⡏⠉⠉⠉⠉⠉⠉⠉⢹                        C~+V       V      C~       C     p    │
 ///  │ ⡇   ▮   ⡇    ⢸  Root  chooses by softmax, τ 0.812                         │
 ///  │ ⡇  ↗·   ⡇ ⌂  ⢸  ▸ FindBattery   -3.612  -3.212  -0.400  -0.400  88 % ━━━ │
@@ -207,17 +207,20 @@ fn rule(look: &Look, title: &str, columns: usize) -> Line<'static> {
 impl View for Stepper {
     fn caption(&self, desk: &Desk) -> String {
         let separator = desk.look.signs.separator;
-        let Some((trace, subject)) = desk.stage.trace(self.back).zip(desk.stage.subject()) else {
+        let Some((rollout, subject)) = desk.stage.rollout().zip(desk.stage.subject()) else {
             return String::new();
         };
-        let state = match (desk.stage.halted(), self.back) {
-            (_, 1) => String::from("1 step back"),
-            (_, back) if back > 0 => format!("{back} steps back"),
-            (true, _) => String::from("halted"),
-            (false, _) => format!("{}x", desk.stage.speed()),
+        let Some(trace) = desk.stage.trace(self.back) else {
+            let (trial, pace) = (rollout.status().trial, pace(desk));
+            return format!("trial {trial} {separator} {pace} {separator} {subject}");
+        };
+        let state = match self.back {
+            0 => pace(desk),
+            1 => String::from("1 step back"),
+            back => format!("{back} steps back"),
         };
         format!(
-            "{subject} {separator} trial {} {separator} step {} {separator} {state}",
+            "trial {} {separator} step {} {separator} {state} {separator} {subject}",
             trace.trial, trace.step
         )
     }
@@ -255,6 +258,10 @@ impl View for Stepper {
             Action::Slower,
             Action::Faster,
         ]
+    }
+
+    fn can(&self, desk: &Desk, action: Action) -> bool {
+        action != Action::StepBack || self.back + 1 < desk.stage.traces()
     }
 
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {

@@ -4,7 +4,7 @@ use ratatui::text::Line;
 
 use super::{Detail, Shown};
 use crate::dashboard::look::Paint;
-use crate::dashboard::views::lines::{Pen, number, told_apart};
+use crate::dashboard::views::lines::{Pen, TINY, is_tiny, number, told_apart};
 use crate::learning::{Change, Lesson, Update};
 
 /// Reward, terminations and updates.
@@ -111,10 +111,14 @@ fn taught(
 
 fn change<'l>(shown: &Shown<'l>, pen: Pen<'l>, name: &str, change: Change) -> Pen<'l> {
     let pen = pen.text(format!("{name} "), Paint::Dim);
-    if change.before == change.after {
-        return pen.text(number(change.after), Paint::Text);
+    let nothing = format!("{}0", shown.look.signs.about);
+    let [before, after] = match change.before == change.after && !is_tiny(change.after) {
+        true => return pen.text(number(change.after), Paint::Text),
+        false => told_apart(change.before, change.after, &nothing),
+    };
+    if before == after {
+        return pen.text(after, Paint::Text);
     }
-    let [before, after] = told_apart(change.before, change.after);
     pen.text(before, Paint::Text)
         .text(format!(" {} ", shown.look.signs.becomes), Paint::Dim)
         .text(after, Paint::Title)
@@ -127,9 +131,15 @@ fn updates(shown: &Shown<'_>, updates: &[Update], listed: usize) -> Vec<Line<'st
             .to(2)
             .text(format!("N {:<4}", update.steps), Paint::Text)
             .text("error of C~ ", Paint::Dim)
-            .text(format!("{:>7}", signed(update.error_inside)), Paint::Text)
+            .text(
+                format!("{:>7}", signed(shown, update.error_inside)),
+                Paint::Text,
+            )
             .text("  of C ", Paint::Dim)
-            .text(format!("{:>7}", signed(update.error_outside)), Paint::Text)
+            .text(
+                format!("{:>7}", signed(shown, update.error_outside)),
+                Paint::Text,
+            )
             .line()
     };
     let (recent, far) = updates.split_at(updates.len().min(listed));
@@ -146,9 +156,10 @@ fn updates(shown: &Shown<'_>, updates: &[Update], listed: usize) -> Vec<Line<'st
     lines
 }
 
-fn signed(value: f32) -> String {
+fn signed(shown: &Shown<'_>, value: f32) -> String {
     let text = match value.abs() {
-        size if (1e-9..0.0005).contains(&size) => format!("{value:.0e}"),
+        _ if is_tiny(value) => return format!("{}0", shown.look.signs.about),
+        size if (TINY..0.0005).contains(&size) => format!("{value:.0e}"),
         _ => number(value),
     };
     match text.starts_with('-') || value == 0.0 {
