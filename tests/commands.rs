@@ -29,6 +29,9 @@ const OTHER: &str = "(Root Avoid ApproachBattery ApproachNest)";
 const COMMANDS: &[&[&str]] = &[
     &["run"],
     &["resume"],
+    &["watch"],
+    &["replay"],
+    &["frame"],
     &["evaluate"],
     &["learn"],
     &["study"],
@@ -157,6 +160,12 @@ fn evaluate_reports_every_repeat() {
     set(&mut command, SHORT);
     let result = json(&mut command);
     let promised = [
+        "scenario",
+        "changed",
+        "seed",
+        "warmup",
+        "trials",
+        "banks",
         "tree",
         "repeats",
         "mean",
@@ -197,6 +206,20 @@ fn evaluate_reports_every_repeat() {
     let mut again = json(&mut again);
     again["control_steps_per_second"] = result["control_steps_per_second"].clone();
     assert_eq!(again, result);
+
+    // For people: all that it takes to repeat it.
+    let mut text = program();
+    text.args(["evaluate", "smoke", "--tree", TREE, "--repeats", "1"]);
+    set(&mut text, &["learning.discount=0.5"]);
+    let text = succeeds(&mut text);
+    assert!(
+        text.contains(
+            "smoke with learning.discount=0.5, seed 1: 1 repeat of 8 scored trials, 8 before them, \
+             1 set of primitive subtasks; a single repeat has no standard error"
+        ),
+        "{text}"
+    );
+    assert!(!text.contains("+-"), "{text}");
 }
 
 #[test]
@@ -362,14 +385,55 @@ fn help_manual_and_completions_are_printed() {
     let manual = succeeds(program().arg("manual"));
     assert!(manual.contains(".TH"));
     for command in COMMANDS {
-        assert!(
-            help.contains(command[0]) && manual.contains(command[0]),
-            "{command:?}"
-        );
+        let page = format!(".TH maxq\\-lab\\-{}", command.join("\\-"));
+        let is_there = manual.contains(&page) || manual.contains(&page.replace('\\', ""));
+        assert!(help.contains(command[0]) && is_there, "{command:?}");
     }
     assert!(succeeds(program().arg("--version")).starts_with("maxq-lab "));
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         assert!(succeeds(program().args(["completions", shell])).contains("evaluate"));
+    }
+}
+
+/// The command lines of the examples in a help text, continued lines put together, without
+/// what is said beside them.
+fn examples(help: &str) -> Vec<String> {
+    let after = help.split("Example").nth(1).unwrap_or("");
+    let lines = after
+        .lines()
+        .skip(1)
+        .take_while(|line| line.starts_with("  "));
+    let mut commands = Vec::<String>::new();
+    for line in lines {
+        assert!(line.chars().count() <= 100, "is broken anywhere: {line}");
+        match commands.last_mut().filter(|last| last.ends_with('\\')) {
+            Some(last) => *last = last.replace('\\', line.trim()),
+            None => commands.push(line.trim().to_owned()),
+        }
+    }
+    let said = |line: String| line.split("    ").next().unwrap_or("").to_owned();
+    commands.into_iter().map(said).collect()
+}
+
+#[test]
+fn every_command_has_examples_and_they_use_options_that_it_has() {
+    for command in COMMANDS {
+        let help = succeeds(program().args(*command).arg("--help"));
+        let examples = examples(&help);
+        // What has none is in the examples of the command above it.
+        let is_shown = command[0] == "tree" && command.len() == 2 || command[0] == "scenarios";
+        assert!(is_shown || !examples.is_empty(), "{command:?}");
+        let calls = examples.iter().flat_map(|line| line.split(['|', ';', '>']));
+        let calls = calls.filter_map(|call| call.trim().strip_prefix("maxq-lab "));
+        for call in calls {
+            let words: Vec<_> = call.split_whitespace().collect();
+            let path = COMMANDS.iter().filter(|path| words.starts_with(path));
+            let path = path.max_by_key(|path| path.len()).expect(call);
+            let help = succeeds(program().args(*path).arg("--help"));
+            for option in words.iter().filter(|word| word.starts_with("--")) {
+                assert!(help.contains(&format!("{option} ")), "{option} in {call}");
+            }
+        }
     }
 }
 

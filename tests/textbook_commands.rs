@@ -47,9 +47,39 @@ fn learning_prints_the_values_of_the_figure() {
 }
 
 #[test]
+fn what_is_given_makes_no_difference_only_where_it_cannot() {
+    let given = succeeds(&["learn", "cliff", "--algorithm", "td0", "--steps", "2000"]);
+    assert!(
+        given.contains("1 repeat of 2000 primitive steps"),
+        "{given}"
+    );
+    assert!(
+        !given.contains("until it is optimal"),
+        "no policy learns: {given}"
+    );
+    let learned = succeeds(&["learn", "cliff", "--algorithm", "q-learning"]);
+    assert!(learned.contains("until it is optimal"), "{learned}");
+    let tree = ["--tree", "(Root Up)"];
+    let policy = ["--policy", "random"];
+    for (algorithm, option, allowed) in [
+        ("td0", tree, "allowed: with maxq-q"),
+        ("q-learning", tree, "allowed: with maxq-q"),
+        ("q-learning", policy, "allowed: with td0"),
+        ("maxq-q", policy, "allowed: with td0"),
+    ] {
+        let arguments = [&["learn", "cliff", "--algorithm", algorithm][..], &option].concat();
+        let said = fails(&arguments);
+        assert!(said.contains(option[0]) && said.contains(allowed), "{said}");
+        assert!(said.contains(&format!("found with {algorithm}")), "{said}");
+    }
+}
+
+#[test]
 fn what_a_world_does_not_have_is_an_error_that_says_so() {
-    let foraging = fails(&["learn", "smoke", "--algorithm", "q-learning"]);
-    assert!(foraging.contains("states cannot be counted"), "{foraging}");
+    for algorithm in ["q-learning", "maxq-q"] {
+        let foraging = fails(&["learn", "smoke", "--algorithm", algorithm]);
+        assert!(foraging.contains("states cannot be counted"), "{foraging}");
+    }
     let rbf = fails(&["learn", "taxi", "--algorithm", "q-learning-rbf"]);
     assert!(rbf.contains("without RBF features"), "{rbf}");
     let primitives = fails(&["primitives", "taxi"]);

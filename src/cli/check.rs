@@ -16,6 +16,11 @@ use crate::worlds::World;
 /// With --format json the complete scenarios are printed, defaults written out: what
 /// 'maxq-lab run --set' can change.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab check mine.json my-plan.json
+  maxq-lab check environment-1 --format json | jq '.[0].scenario'       all that --set can change
+  maxq-lab check mine.json --set learning.discount=0.95")]
 pub(super) struct Args {
     /// Scenario files, plans, or names of embedded ones.
     #[arg(required = true)]

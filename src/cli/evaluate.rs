@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::answer::answer;
-use super::output::{Done, Failure, Format};
-use super::progress::bar;
+use super::answer::{Asked, answer};
+use super::output::{Done, Failure, counted};
+use super::progress::repeats;
 use super::source::Source;
-use crate::evolution::{Experiment, Workers, read_tree};
-use crate::lab::{Protocol, Scored, WorldTask, evaluate};
+use crate::evolution::{Experiment, read_tree};
+use crate::lab::{Protocol, Scored, WorldTask, departures, evaluate, in_words};
 use crate::learning::Gate;
 use crate::worlds::World;
 
@@ -43,25 +43,23 @@ pub(super) struct Args {
     #[arg(long, value_name = "R", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     repeats: u64,
 
-    /// Separately trained sets of primitive subtasks.
+    /// Separately trained sets of primitive subtasks; no more than there are repeats are used.
     #[arg(long, value_name = "B", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     banks: u64,
 
-    /// Seed of all random streams.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-
-    /// Computing threads; 0 means one for each processor.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
-
-    /// How to report.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    #[command(flatten)]
+    asked: Asked,
 }
 
 #[derive(Serialize)]
 struct Report {
+    scenario: String,
+    /// Settings in which it departs from the embedded one of its name.
+    changed: Option<String>,
+    seed: u64,
+    warmup: usize,
+    trials: usize,
+    banks: usize,
     #[serde(flatten)]
     scored: Scored,
     control_steps_per_second: f64,
@@ -69,7 +67,7 @@ struct Report {
 
 /// Carries out the command.
 pub(super) fn main(args: Args) -> Done {
-    let (scenario, format) = (args.source.load()?, args.format);
+    let (scenario, format) = (args.source.load()?, args.asked.format);
     answer(scenario, format, |gate| Task { args, gate }, describe)
 }
 
@@ -90,18 +88,25 @@ impl WorldTask for Task {
             warmup: count(self.args.warmup),
             trials: count(self.args.trials),
             repeats: count(self.args.repeats),
-            banks: count(self.args.banks),
-            seed: self.args.seed,
+            // A set that no repeat uses would be trained for nothing.
+            banks: count(self.args.banks.min(self.args.repeats)),
+            seed: self.args.asked.seed,
         };
-        let workers = Workers::new(usize::from(self.args.threads))?;
+        let workers = self.args.asked.workers()?;
         let started = Instant::now();
-        let bar = bar(self.args.repeats, true);
-        bar.set_message("repeats");
+        let bar = repeats(self.args.repeats);
         let show = |done| bar.set_position(done as u64);
         let scored = evaluate(&experiment, &tree, &protocol, &workers, &self.gate, show)?;
         bar.finish_and_clear();
         let computed = self.gate.control_steps() as f64;
+        let scenario = &experiment.scenario;
         Ok(Report {
+            scenario: scenario.name.clone(),
+            changed: in_words(&departures(scenario)),
+            seed: protocol.seed,
+            warmup: protocol.warmup,
+            trials: protocol.trials,
+            banks: protocol.banks,
             control_steps_per_second: computed / started.elapsed().as_secs_f64(),
             scored,
         })
@@ -112,22 +117,30 @@ fn describe(report: &Report) -> String {
     let scored = &report.scored;
     let evaluation = &scored.evaluation;
     let error = |error: Option<f64>, digits: usize| match error {
-        Some(error) => format!("{error:.digits$} (standard error)"),
-        None => String::from("unknown, from a single repeat"),
+        Some(error) => format!(" +- {error:.digits$} (standard error)"),
+        None => String::new(),
+    };
+    let changed = report.changed.as_ref();
+    let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
+    let unknown = match evaluation.standard_error {
+        Some(_) => "",
+        None => "; a single repeat has no standard error",
     };
     format!(
-        "{}\n{:.1} +- {} time steps a trial, {} repeats of {} scored trials\n\
-         {:.2} +- {} return of a trial, the sum of its rewards\n\
-         {:.2} % of the trials delivered\n{} control steps, {:.0} a second with the training of \
-         the primitive subtasks\n",
+        "{}\n{}{changed}, seed {}: {} of {}, {} before them, {} of primitive subtasks{unknown}\n\
+         {:.1}{} time steps a trial\n\
+         {:.2}{} return of a trial, the sum of its rewards\n\
+         {:.2} % of the trials delivered\n\
+         {} control steps, {:.0} a second with the training of the primitive subtasks\n",
         evaluation.tree,
+        report.scenario,
+        report.seed,
+        counted(evaluation.repeats.len() as u64, "repeat"),
+        counted(report.trials as u64, "scored trial"),
+        report.warmup,
+        counted(report.banks as u64, "set"),
         evaluation.mean,
         error(evaluation.standard_error, 1),
-        evaluation.repeats.len(),
-        evaluation
-            .repeats
-            .first()
-            .map_or(0, |repeat| repeat.steps.len()),
         scored.mean_return,
         error(scored.return_standard_error, 2),
         100.0 * evaluation.delivered_share,

@@ -22,10 +22,11 @@ use crate::lab::specimen::{Archive, bench};
 Examples:
   maxq-lab frame runs/environment-1-seed1
   maxq-lab frame runs/environment-1-seed1 --view fitness --format svg > fitness.svg
-  maxq-lab frame runs/environment-1-seed1 --generation 3 --play 2 --size 200x60 --keys 'tab tab enter'")]
+  maxq-lab frame runs/environment-1-seed1 --generation 3 --play 2 --size 200x60 \\
+           --keys 'tab tab enter'")]
 pub(super) struct Args {
     /// The run folder.
-    folder: PathBuf,
+    run_dir: PathBuf,
 
     #[command(flatten)]
     beginning: Beginning,
@@ -34,7 +35,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "WxH", default_value = "120x40")]
     size: Size,
 
-    /// The view.
+    /// The view: overview, arena, hierarchy, fitness, policy, population, status, inspector,
+    /// policy-map, stepper, or compare.
     #[arg(long, value_name = "V", default_value = "overview")]
     view: ViewId,
 
@@ -46,7 +48,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     play: f64,
 
-    /// Keys that are pressed then, by their names, with spaces between.
+    /// Keys that are pressed then, with spaces between: characters, or names such as enter,
+    /// tab, esc, up, page-down, f1, ctrl-l. ? in the dashboard tells what they do.
     #[arg(long, default_value = "")]
     keys: String,
 
@@ -94,13 +97,17 @@ pub(super) fn main(args: &Args) -> Done {
     let keys: Result<Vec<Key>, _> = args.keys.split_ascii_whitespace().map(str::parse).collect();
     let keys = keys.map_err(|error| format!("--keys: {error}"))?;
     let (look, key_map) = args.appearance.load()?;
-    let recording = Recording::read(&args.folder)?;
+    let recording = Recording::read(&args.run_dir)?;
+    let lived = recording.generations();
+    if let Some(found) = args.generation.filter(|found| !(1..=lived).contains(found)) {
+        return Err(format!("--generation: found {found}; allowed: 1 to {lived}").into());
+    }
     let manifest = recording.manifest;
     let bench = bench(manifest.scenario, manifest.seed)?;
-    let folder = args.folder.display().to_string();
+    let folder = args.run_dir.display().to_string();
     let start = args.beginning.read(bench)?;
     let app = App::new(Desk::new(bench, folder, Mode::Replay, look, key_map)).beginning_at(start);
-    let mut still = Still::new(app, Archive::new(bench, &args.folder, None));
+    let mut still = Still::new(app, Archive::new(bench, &args.run_dir, None));
     let Size(columns, rows) = args.size;
     still.update(Input::Resize(columns, rows));
     for event in recording.events {

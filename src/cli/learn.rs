@@ -6,14 +6,14 @@ use std::sync::Arc;
 use clap::ValueEnum;
 use serde::Serialize;
 
-use super::answer::answer;
-use super::output::{Done, Failure, Format};
-use super::progress::bar;
+use super::answer::{Asked, answer};
+use super::output::{Done, Failure, counted};
+use super::progress::repeats;
 use super::source::Source;
-use crate::evolution::{Experiment, Workers, read_tree};
+use crate::evolution::{Experiment, read_tree};
 use crate::lab::{
-    Algorithm, Course, GivenPolicy, LearnProtocol, Learned, Mean, ValueGrid, WorldTask, learn,
-    value_grids,
+    Algorithm, Course, GivenPolicy, LearnError, LearnProtocol, Learned, Mean, ValueGrid, WorldTask,
+    departures, in_words, learn, value_grids,
 };
 use crate::learning::Gate;
 use crate::worlds::scene::Scenic;
@@ -28,7 +28,8 @@ use crate::worlds::scene::Scenic;
 #[command(after_help = "\
 Examples:
   maxq-lab learn cliff --algorithm q-learning
-  maxq-lab learn cliff --algorithm td0 --policy random --steps 1000000 --set learning.learning_rate=0.01
+  maxq-lab learn cliff --algorithm td0 --policy random --steps 1000000 \\
+           --set learning.learning_rate=0.01
   maxq-lab learn taxi-fickle --algorithm maxq-q --repeats 30")]
 pub(super) struct Args {
     #[command(flatten)]
@@ -38,13 +39,13 @@ pub(super) struct Args {
     #[arg(long, value_enum)]
     algorithm: Name,
 
-    /// The hierarchy for maxq-q, as text; by default the world's hand-made one.
+    /// The hierarchy for maxq-q, as text [default: the world's hand-made one].
     #[arg(long, value_name = "T")]
     tree: Option<String>,
 
-    /// The policy whose values td0 learns.
-    #[arg(long, value_enum, default_value_t)]
-    policy: PolicyName,
+    /// The policy whose values td0 learns [default: optimal].
+    #[arg(long, value_enum)]
+    policy: Option<PolicyName>,
 
     /// Primitive steps of each repeat.
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
@@ -62,22 +63,13 @@ pub(super) struct Args {
     #[arg(long, value_name = "R", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     repeats: u64,
 
-    /// Seed of all random streams.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-
-    /// Computing threads; 0 means one for each processor.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
-
     /// What is the case in the states whose values are printed, such as 'from R to B';
     /// by default the first there is.
     #[arg(long, value_name = "CASE")]
     show: Option<String>,
 
-    /// How to report.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    #[command(flatten)]
+    asked: Asked,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -92,10 +84,17 @@ enum Name {
     MaxqQ,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+impl Name {
+    /// As it is given.
+    fn word(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum PolicyName {
     /// The optimal policy.
-    #[default]
     Optimal,
     /// All actions alike.
     Random,
@@ -105,6 +104,8 @@ enum PolicyName {
 struct Report {
     scenario: String,
     algorithm: String,
+    /// Settings in which the scenario departs from the embedded one of its name.
+    changed: Option<String>,
     seed: u64,
     steps: u64,
     tolerance: f64,
@@ -118,7 +119,16 @@ struct Report {
 
 /// Carries out the command.
 pub(super) fn main(args: Args) -> Done {
-    let (scenario, format) = (args.source.load()?, args.format);
+    let (scenario, format) = (args.source.load()?, args.asked.format);
+    for (option, is_there, algorithm) in [
+        ("--tree", args.tree.is_some(), Name::MaxqQ),
+        ("--policy", args.policy.is_some(), Name::Td0),
+    ] {
+        if is_there && args.algorithm != algorithm {
+            let (found, allowed) = (args.algorithm.word(), algorithm.word());
+            return Err(format!("{option}: found with {found}; allowed: with {allowed}").into());
+        }
+    }
     if !(0.0..=1000.0).contains(&args.tolerance) {
         let found = args.tolerance;
         return Err(format!("--tolerance: found {found}; allowed: 0 to 1000").into());
@@ -136,20 +146,24 @@ impl WorldTask for Task {
 
     fn carry_out<W: Scenic + 'static>(self, experiment: Experiment<W>) -> Self::Output {
         let args = &self.args;
+        let name = &experiment.scenario.name;
+        let in_world = |error: LearnError| format!("{name}: {error}");
+        if experiment.world.finite().is_none() {
+            // Before a hierarchy is asked for that would not help.
+            return Err(in_world(LearnError::NotFinite).into());
+        }
         let algorithm = algorithm(args, &experiment)?;
         let protocol = LearnProtocol {
             steps: args.steps,
             every: args.check_every,
             tolerance: args.tolerance,
             repeats: usize::try_from(args.repeats).unwrap_or(usize::MAX),
-            seed: args.seed,
+            seed: args.asked.seed,
         };
         let shown = shown(args.show.as_deref(), &experiment.world.variants())?;
-        let workers = Workers::new(usize::from(args.threads))?;
-        let bar = bar(args.repeats, true);
-        bar.set_message("repeats");
+        let workers = args.asked.workers()?;
+        let bar = repeats(args.repeats);
         let show = |done| bar.set_position(done as u64);
-        let name = &experiment.scenario.name;
         let learned = learn(
             &experiment,
             &algorithm,
@@ -158,15 +172,13 @@ impl WorldTask for Task {
             &self.gate,
             show,
         )
-        .map_err(|error| format!("{name}: {error}"))?;
+        .map_err(in_world)?;
         bar.finish_and_clear();
         Ok(Report {
             scenario: name.clone(),
-            algorithm: args
-                .algorithm
-                .to_possible_value()
-                .map_or_else(String::new, |value| value.get_name().to_owned()),
-            seed: args.seed,
+            algorithm: args.algorithm.word(),
+            changed: in_words(&departures(&experiment.scenario)),
+            seed: args.asked.seed,
             steps: args.steps,
             tolerance: args.tolerance,
             values: value_grids(&experiment.world, &learned),
@@ -179,8 +191,8 @@ impl WorldTask for Task {
 fn algorithm<W: Scenic>(args: &Args, experiment: &Experiment<W>) -> Result<Algorithm, Failure> {
     Ok(match args.algorithm {
         Name::Td0 => Algorithm::Td0(match args.policy {
-            PolicyName::Optimal => GivenPolicy::Optimal,
-            PolicyName::Random => GivenPolicy::Random,
+            Some(PolicyName::Random) => GivenPolicy::Random,
+            Some(PolicyName::Optimal) | None => GivenPolicy::Optimal,
         }),
         Name::QLearning => Algorithm::QLearning,
         Name::QLearningRbf => Algorithm::QLearningRbf,
@@ -203,27 +215,36 @@ fn shown(wanted: Option<&str>, variants: &[String]) -> Result<usize, Failure> {
 
 fn describe(report: &Report) -> String {
     let learned = &report.learned;
-    let repeats = learned.repeats.len();
     let trials: u64 = learned.repeats.iter().map(|course| course.trials).sum();
+    let changed = report.changed.as_ref();
+    let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
     let mut text = format!(
-        "{}, {}, seed {}: {repeats} repeats of {} primitive steps, {trials} trials\n",
-        report.scenario, report.algorithm, report.seed, report.steps
+        "{}{changed}, {}, seed {}: {} of {}, {}\n\
+         expected return of the optimal policy   {:.4}\n",
+        report.scenario,
+        report.algorithm,
+        report.seed,
+        counted(learned.repeats.len() as u64, "repeat"),
+        counted(report.steps, "primitive step"),
+        counted(trials, "trial"),
+        learned.optimal_return
     );
-    // Writing to a string cannot fail.
-    let _ = write!(
-        text,
-        "expected return of the optimal policy   {:.4}\n\
-         of the greedy policy at the end         {}\n\
-         primitive steps until it is optimal     {}\n\
-         until it is and stays so                {}\n",
-        learned.optimal_return,
-        interval(learned.final_greedy_return, 4, "(the policy is given)"),
-        reached(learned, learned.steps_until_optimal, |course| course
-            .steps_until_optimal),
-        reached(learned, learned.steps_until_always_optimal, |course| {
-            course.steps_until_always_optimal
-        }),
-    );
+    // Where the policy is given there is none that becomes optimal. Writing to a string
+    // cannot fail.
+    if let Some(at_the_end) = learned.final_greedy_return {
+        let _ = write!(
+            text,
+            "of the greedy policy at the end         {}\n\
+             primitive steps until it is optimal     {}\n\
+             until it is and stays so                {}\n",
+            interval(at_the_end, 4),
+            reached(learned, learned.steps_until_optimal, |course| course
+                .steps_until_optimal),
+            reached(learned, learned.steps_until_always_optimal, |course| {
+                course.steps_until_always_optimal
+            }),
+        );
+    }
     let last = learned
         .repeats
         .first()
@@ -244,10 +265,7 @@ fn describe(report: &Report) -> String {
     text
 }
 
-fn interval(mean: Option<Mean>, digits: usize, none: &str) -> String {
-    let Some(mean) = mean else {
-        return none.to_owned();
-    };
+fn interval(mean: Mean, digits: usize) -> String {
     match mean.half_width {
         Some(half) => format!("{:.digits$} +- {half:.digits$} (95 %)", mean.mean),
         None => format!("{:.digits$}", mean.mean),
@@ -255,15 +273,12 @@ fn interval(mean: Option<Mean>, digits: usize, none: &str) -> String {
 }
 
 fn reached(learned: &Learned, mean: Option<Mean>, of: fn(&Course) -> Option<u64>) -> String {
-    let count = learned
-        .repeats
-        .iter()
-        .filter(|course| of(course).is_some())
-        .count();
-    interval(
-        mean,
-        0,
-        &format!("in {count} of {} repeats only", learned.repeats.len()),
+    let reached = |course: &&Course| of(course).is_some();
+    let count = learned.repeats.iter().filter(reached).count();
+    let all = counted(learned.repeats.len() as u64, "repeat");
+    mean.map_or_else(
+        || format!("in {count} of {all} only"),
+        |mean| interval(mean, 0),
     )
 }
 

@@ -1,5 +1,6 @@
 //! Completions for shells, and the manual page.
 
+use std::io;
 use std::process::ExitCode;
 
 use clap::CommandFactory;
@@ -10,15 +11,17 @@ use super::output::{self, Done};
 /// Print completions for a shell.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Example:
-  maxq-lab completions bash > ~/.local/share/bash-completion/completions/maxq-lab")]
+Examples:
+  maxq-lab completions bash > ~/.local/share/bash-completion/completions/maxq-lab
+  maxq-lab completions zsh > ~/.zfunc/_maxq-lab           a folder that is in $fpath
+  maxq-lab completions fish > ~/.config/fish/completions/maxq-lab.fish")]
 pub(super) struct CompletionArgs {
     /// The shell.
     #[arg(value_enum)]
     shell: clap_complete::Shell,
 }
 
-/// Print the manual page, in roff.
+/// Print the manual pages, in roff.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Example:
@@ -33,15 +36,21 @@ pub(super) fn completions(args: &CompletionArgs) -> Done {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Carries out `manual`: the page of the program, then that of each command.
+/// Carries out `manual`: the page of the program, then those of its commands.
 pub(super) fn manual(_args: &ManualArgs) -> Done {
     let mut command = Cli::command();
     command.build();
-    let mut page = Vec::new();
-    clap_mangen::Man::new(command.clone()).render(&mut page)?;
-    for subcommand in command.get_subcommands() {
-        clap_mangen::Man::new(subcommand.clone()).render(&mut page)?;
-    }
-    output::raw(&page)?;
+    let mut pages = Vec::new();
+    render(&command, &mut pages)?;
+    output::raw(&pages)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the page of a command, then those of the commands that it has.
+fn render(command: &clap::Command, pages: &mut Vec<u8>) -> io::Result<()> {
+    clap_mangen::Man::new(command.clone()).render(pages)?;
+    // What every command has by itself needs no page.
+    let commands = command.get_subcommands();
+    let mut commands = commands.filter(|inner| inner.get_name() != "help");
+    commands.try_for_each(|inner| render(inner, pages))
 }

@@ -72,7 +72,7 @@ enum Command {
     Learn(learn::Args),
     Study(Box<study::Args>),
     Export(export::Args),
-    #[command(subcommand)]
+    #[command(subcommand, after_help = tree::EXAMPLES)]
     Tree(tree::Command),
     Primitives(primitives::Args),
     Check(check::Args),

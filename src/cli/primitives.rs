@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::answer::answer;
-use super::output::{Done, Failure, Format};
+use super::answer::{Asked, answer};
+use super::output::{Done, Failure};
 use super::source::Source;
-use crate::evolution::{Experiment, Workers};
+use crate::evolution::Experiment;
 use crate::lab::WorldTask;
 use crate::learning::Gate;
 use crate::worlds::{Kind, World};
@@ -19,21 +19,17 @@ use crate::worlds::{Kind, World};
 /// For typical inputs: the greedy action and the value of every action (Thesis Figure 4.3).
 /// Actions are numbered as in Thesis Table 4.4.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab primitives environment-1
+  maxq-lab primitives environment-1 --set world.foraging.features.rbf_width=variance
+  maxq-lab primitives environment-3 --seed 7 --format json | jq .primitives[0]")]
 pub(super) struct Args {
     #[command(flatten)]
     source: Source,
 
-    /// Seed of all random streams.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-
-    /// Computing threads; 0 means one for each processor.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
-
-    /// How to report.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    #[command(flatten)]
+    asked: Asked,
 }
 
 #[derive(Serialize)]
@@ -63,7 +59,7 @@ struct Row {
 
 /// Carries out the command.
 pub(super) fn main(args: Args) -> Done {
-    let (scenario, format) = (args.source.load()?, args.format);
+    let (scenario, format) = (args.source.load()?, args.asked.format);
     answer(scenario, format, |gate| Task { args, gate }, describe)
 }
 
@@ -86,8 +82,8 @@ impl WorldTask for Task {
             )
             .into());
         }
-        let workers = Workers::new(usize::from(self.args.threads))?;
-        let skills = experiment.train(self.args.seed, 0, &workers, &self.gate)?;
+        let workers = self.args.asked.workers()?;
+        let skills = experiment.train(self.args.asked.seed, 0, &workers, &self.gate)?;
         let catalogue = experiment.catalogue();
         let primitives = skills.all().iter().map(|skill| {
             let rows = experiment
@@ -115,7 +111,7 @@ impl WorldTask for Task {
         });
         Ok(Report {
             scenario: experiment.scenario.name.clone(),
-            seed: self.args.seed,
+            seed: self.args.asked.seed,
             primitives: primitives.collect(),
         })
     }

@@ -49,6 +49,13 @@ pub(super) fn bar(length: u64, shown: bool) -> ProgressBar {
     bar
 }
 
+/// A bar for repeats of the same.
+pub(super) fn repeats(number: u64) -> ProgressBar {
+    let bar = bar(number, true);
+    bar.set_message("repeats");
+    bar
+}
+
 /// Draws a bar on standard error from now on, where that is a terminal.
 pub(super) fn appear(bar: &ProgressBar) {
     if stderr().is_terminal() {

@@ -14,6 +14,10 @@ use crate::lab::{Invocation, RunFolder, resume};
 /// --generations a run that ended at its limit goes on to another limit. On a terminal a
 /// dashboard shows it, the past generations included.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab resume runs/environment-3-seed7
+  maxq-lab resume runs/environment-3-seed7 --generations 400        beyond its limit")]
 pub(super) struct Args {
     /// The run folder.
     run_dir: PathBuf,

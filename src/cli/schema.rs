@@ -13,6 +13,10 @@ use crate::scenario::Scenario;
 /// Editors use it to complete and check these files; 'maxq-lab check' also checks what a
 /// schema cannot say.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab schema > scenario.schema.json
+  maxq-lab schema --of plan > plan.schema.json")]
 pub(super) struct Args {
     /// What the schema is of.
     #[arg(long, value_enum, default_value_t)]

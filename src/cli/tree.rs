@@ -6,12 +6,21 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::json;
 
-use super::output::{self, Done, Failure, Format};
+use super::output::{self, Done, Failure, Format, counted};
 use crate::evolution::{Experiment, read_tree};
 use crate::hierarchy::{Glyphs, Summary, Tree, draw, structural_difference, to_dot, to_text};
 use crate::lab::{WorldTask, with_world};
 use crate::scenario::Scenario;
 use crate::worlds::{Catalogue, World};
+
+/// Examples for its help.
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  maxq-lab tree show '(Root Wander (Capture Avoid ApproachBattery) ApproachNest)'
+  maxq-lab tree check --scenario taxi '(Root North South East West Pickup Putdown)'
+  maxq-lab tree diff '(Root Wander ApproachBattery ApproachNest)' \\
+           '(Root Avoid ApproachBattery ApproachNest)'
+  maxq-lab tree dot '(Root Wander ApproachBattery ApproachNest)' | dot -Tsvg > tree.svg";
 
 /// Look at hierarchies: draw, check, compare, export.
 ///
@@ -24,6 +33,10 @@ pub(super) enum Command {
     /// Check a hierarchy against the typing rules.
     Check(One),
     /// Measure the structural difference of two hierarchies (Thesis 4.5.2).
+    ///
+    /// It is 0 where they are alike, and the further below the more differs: each composite
+    /// subtask that only one of them has costs its weight, each primitive child that only one
+    /// of them has at a place costs 1. Their order does not matter.
     Diff {
         /// The one hierarchy.
         a: String,
@@ -90,11 +103,11 @@ fn show(text: &str, how: &How) -> Result<(), Failure> {
         .map(|(index, names)| format!("state type {}: {}", index + 1, names.join(", ")))
         .collect();
     output::text(&format!(
-        "{}\n\ndepth {}, {} composite and {} primitive subtasks\n{}\n",
+        "{}\n\ndepth {}, {} composite and {}\n{}\n",
         drawing.join("\n"),
         summary.depth,
         summary.composites,
-        summary.primitives.len(),
+        counted(summary.primitives.len() as u64, "primitive subtask"),
         by_type.join("\n")
     ))
 }

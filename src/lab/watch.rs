@@ -104,4 +104,14 @@ impl Recording {
     pub fn read(folder: &Path) -> Result<Self, RunError> {
         Follower::of(folder).read()
     }
+
+    /// Generations lived so far.
+    #[must_use]
+    pub fn generations(&self) -> u64 {
+        let last = self.events.iter().rev().find_map(|event| match event {
+            Event::Generation(record) => Some(record.generation),
+            _ => None,
+        });
+        last.unwrap_or(0)
+    }
 }

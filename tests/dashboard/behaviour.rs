@@ -356,10 +356,15 @@ fn a_frame_that_cannot_be_made_is_an_error_with_what_is_allowed() {
         (["--theme", "dusk"], "high-contrast"),
         (["--keys", "pagedown"], "page-down"),
         (["--play", "-1"], "0 to 3600"),
+        (["--generation", "7"], "1 to 6"),
         (["--format", "png"], "svg"),
     ] {
         let [option, value] = arguments;
         let error = frame(&[&format!("{option}={value}")]).unwrap_err();
         assert!(error.contains(value) && error.contains(allowed), "{error}");
+    }
+    let help = frame(&["--help"]).unwrap();
+    for view in ViewId::all() {
+        assert!(help.contains(view.name()), "{} is in no help", view.name());
     }
 }

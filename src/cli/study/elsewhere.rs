@@ -70,6 +70,9 @@ struct Program {
 /// be the same. The order of the parts does not matter, and events, checkpoints, evaluations
 /// and report are the same bytes as if one machine had done the study.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Example:
+  maxq-lab study merge from-host-a from-host-b --out thesis; maxq-lab study report thesis")]
 pub(super) struct MergeArgs {
     /// The folders of the parts.
     #[arg(required = true, value_name = "DIR")]

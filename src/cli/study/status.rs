@@ -9,6 +9,10 @@ use crate::report::{RunStatus, Stage, Study, status, write_report};
 
 /// Tell how far the runs of a study are.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab study status studies/thesis
+  maxq-lab study status studies/thesis --format json | jq -r '.[] | select(.stage != \"done\").name'")]
 pub(super) struct StatusArgs {
     /// The folder of the study.
     dir: PathBuf,
@@ -23,6 +27,10 @@ pub(super) struct StatusArgs {
 /// Writes DIR/report: report.md, report.json, tables as CSV, figures as SVG; prints the
 /// report. It is made of the runs that are done, at any time.
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab study report studies/thesis | less
+  maxq-lab study report studies/thesis --format json | jq '.claims[] | {claim, verdict}'")]
 pub(super) struct ReportArgs {
     /// The folder of the study.
     dir: PathBuf,
