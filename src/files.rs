@@ -64,6 +64,65 @@ pub fn stated_format(text: &str) -> Option<u32> {
     Some(any.format)
 }
 
+/// Why a JSON text cannot be read, and where.
+#[derive(Debug, Error)]
+#[error("line {line}, column {column}, at {place}: {message}")]
+pub struct JsonError {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1.
+    pub column: usize,
+    /// Dotted path of the value.
+    pub place: String,
+    /// What was found and what was expected.
+    pub message: String,
+}
+
+const TOP: &str = "the top level";
+
+impl JsonError {
+    /// The same of a value that is the part `name` of another.
+    #[must_use]
+    pub fn within(self, name: &str) -> Self {
+        let place = match self.place.as_str() {
+            TOP => name.to_owned(),
+            place => format!("{name}.{place}"),
+        };
+        Self { place, ..self }
+    }
+
+    fn at(place: String, error: &serde_json::Error) -> Self {
+        let (line, column) = (error.line(), error.column());
+        let text = error.to_string();
+        let suffix = format!(" at line {line} column {column}");
+        Self {
+            line,
+            column,
+            place,
+            message: text.strip_suffix(&suffix).unwrap_or(&text).to_owned(),
+        }
+    }
+}
+
+/// Reads a JSON text that is one value and nothing more.
+///
+/// # Errors
+/// When it is not JSON of the type, with the place.
+pub fn parse_json<'t, T: Deserialize<'t>>(text: &'t str) -> Result<T, JsonError> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let place = match error.path().to_string().as_str() {
+            // `?` is a key that could not be read.
+            "." | "?" => String::from(TOP),
+            path => path.to_owned(),
+        };
+        JsonError::at(place, error.inner())
+    })?;
+    let end = json.end();
+    end.map_err(|error| JsonError::at(String::from("the end of the file"), &error))?;
+    Ok(value)
+}
+
 /// How the names of files begin that are being written. One that is found when nobody
 /// writes was left by a process that died.
 pub const WRITING: &str = ".writing-";
@@ -224,4 +283,32 @@ pub fn visible(text: &str) -> String {
         c => vec![c],
     };
     text.chars().flat_map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse_json;
+
+    #[test]
+    fn json_errors_say_once_where_they_are() {
+        #[derive(Debug, serde::Deserialize)]
+        struct Any {
+            #[expect(dead_code, reason = "only read")]
+            list: Vec<u8>,
+        }
+        let says = |text| parse_json::<Any>(text).unwrap_err().to_string();
+        let eof = "line 1, column 0, at the top level: EOF while parsing a value";
+        assert_eq!(says(""), eof);
+        let number = says("{\"list\":\n[1,-2]}");
+        assert!(
+            number.starts_with("line 2, column 5, at list[1]: invalid value"),
+            "{number}"
+        );
+        assert_eq!(number.matches("line").count(), 1, "{number}");
+        let more = says("{\"list\":[]} x");
+        assert!(
+            more.contains("at the end of the file: trailing characters"),
+            "{more}"
+        );
+    }
 }

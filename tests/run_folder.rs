@@ -266,6 +266,19 @@ fn an_existing_run_is_replaced_only_by_force() {
 }
 
 #[test]
+fn a_run_folder_is_no_scenario_and_it_is_said_what_was_meant() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("run");
+    run_in(&folder, &short(&[]), 1, &threads(2));
+    let said = refused(program().arg("run").arg(&folder));
+    assert!(
+        said.contains("found a run folder; allowed: a scenario file"),
+        "{said}"
+    );
+    assert!(said.contains("'maxq-lab resume "), "{said}");
+}
+
+#[test]
 fn force_deletes_nothing_that_is_no_run() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("thesis");

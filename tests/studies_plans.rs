@@ -275,6 +275,41 @@ fn a_study_s_folder_is_a_plan() {
 }
 
 #[test]
+fn what_is_neither_plan_nor_study_nor_scenario_is_told_what_there_is() {
+    let parent = tempfile::tempdir().unwrap();
+    fs::create_dir(parent.path().join("empty")).unwrap();
+    let no_arms = r#"{"format":1,"name":"mine","scenarios":["smoke"],"seeds":"1"}"#;
+    fs::write(parent.path().join("no-arms.json"), no_arms).unwrap();
+    for (arguments, expected) in [
+        (&["evolving-taksi"][..], "plans are evolving-taxi, thesis, "),
+        (
+            &["empty"],
+            "empty: holds no study.json; allowed: the folder of",
+        ),
+        (&["smoke", "empty"], "empty: holds no study.json"),
+        (
+            &["no-arms.json"],
+            "no-arms.json: line 1, column 60, at the top level: missing field `arms`",
+        ),
+        (
+            &["smoke", "--only", "21"],
+            "--only: found \"21\"; allowed: 1 to 20, or SCENARIO/ARM/seed-N as 'study plan'",
+        ),
+    ] {
+        let mut command = program();
+        let command = command.current_dir(parent.path()).arg("study");
+        let refused = output(command.args(arguments).args(["--out", "out"]));
+        assert_eq!(refused.status.code(), Some(1));
+        let said = stderr(&refused);
+        assert!(said.contains(expected), "{said}");
+        assert!(
+            !parent.path().join("out").exists(),
+            "made for {arguments:?}"
+        );
+    }
+}
+
+#[test]
 fn settings_are_checked_with_scenarios() {
     let check = |arguments: &[&str]| output(program().arg("check").args(arguments));
     let changed = check(&[

@@ -16,7 +16,7 @@ use crate::scenario::Scenario;
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct Asked {
     /// Seed of all random streams.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub(super) seed: u64,
 
     /// Computing threads; 0 means one for each processor.

@@ -59,7 +59,7 @@ enum ExportFormat {
     Text,
 }
 
-/// Columns of a figure in the terminal where the terminal does not say.
+/// Columns of a figure in text where there is no terminal that says.
 const COLUMNS: usize = 80;
 
 /// Carries out the command.
@@ -134,5 +134,9 @@ fn columns() -> usize {
     let said = std::env::var("COLUMNS")
         .ok()
         .and_then(|text| text.parse().ok());
-    said.unwrap_or(COLUMNS)
+    let window = || rustix::termios::tcgetwinsize(std::io::stdout()).ok();
+    let wide = || window().map(|window| usize::from(window.ws_col));
+    said.or_else(wide)
+        .filter(|columns| *columns > 0)
+        .unwrap_or(COLUMNS)
 }

@@ -41,11 +41,16 @@ pub(super) struct Args {
     view: ViewId,
 
     /// The generation to look at [default: the last].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     generation: Option<u64>,
 
     /// Seconds that the rollout plays before the frame is taken.
-    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     play: f64,
 
     /// Keys that are pressed then, with spaces between: characters, or names such as enter,

@@ -56,7 +56,12 @@ pub(super) struct Args {
     check_every: u64,
 
     /// A policy is optimal if its expected return is no further below the best than this.
-    #[arg(long, value_name = "RETURN", default_value_t = 0.1)]
+    #[arg(
+        long,
+        value_name = "RETURN",
+        default_value_t = 0.1,
+        allow_negative_numbers = true
+    )]
     tolerance: f64,
 
     /// Learners that begin from nothing.

@@ -23,7 +23,7 @@ pub(super) struct Args {
     run_dir: PathBuf,
 
     /// Another generation limit.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     generations: Option<u64>,
 
     #[command(flatten)]

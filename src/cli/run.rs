@@ -34,11 +34,11 @@ pub(super) struct Args {
     source: Source,
 
     /// Seed of all random streams: the same seed gives the same bits.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
 
     /// Generations after which the run ends although it has not converged.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     generations: Option<u64>,
 
     /// The run folder [default: runs/SCENARIO-seedN].

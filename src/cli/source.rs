@@ -1,5 +1,7 @@
 //! Arguments that several commands share.
 
+use std::path::Path;
+
 use clap::Args;
 
 use super::output::Failure;
@@ -23,6 +25,15 @@ pub(super) struct Source {
 impl Source {
     /// The scenario with its changes.
     pub(super) fn load(&self) -> Result<Scenario, Failure> {
-        Ok(Scenario::load(&self.scenario)?.with_settings(&self.settings)?)
+        let name = &self.scenario;
+        if Path::new(name).join("run.json").is_file() {
+            let message = format!(
+                "{name}: found a run folder; allowed: a scenario file, or the name of an embedded \
+                 scenario; 'maxq-lab resume {name}' goes on with the run, 'maxq-lab replay {name}' \
+                 shows it"
+            );
+            return Err(message.into());
+        }
+        Ok(Scenario::load(name)?.with_settings(&self.settings)?)
     }
 }

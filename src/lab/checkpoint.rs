@@ -14,6 +14,7 @@ use serde_json::value::RawValue;
 use super::checkpoint_error::CheckpointError;
 use super::population_file::{IndividualFile, PrimitiveFile, skills};
 use crate::evolution::{Experiment, State};
+use crate::files::parse_json;
 use crate::learning::{Skill, Skills};
 use crate::scenario::Scenario;
 use crate::worlds::World;
@@ -157,11 +158,11 @@ impl Checkpoint {
     /// When the text is not a checkpoint of this version, was changed, or holds a
     /// scenario that breaks a rule.
     pub fn from_text(text: &str) -> Result<Self, CheckpointError> {
-        let any: AnyFormat = parse(text, "")?;
+        let any: AnyFormat = parse_json(text)?;
         if any.format != CHECKPOINT_FORMAT {
             return Err(CheckpointError::Format { found: any.format });
         }
-        let envelope: Envelope<'_> = parse(text, "")?;
+        let envelope: Envelope<'_> = parse_json(text)?;
         let state = envelope.state.get();
         let actual = checksum(state.as_bytes());
         if actual != envelope.crc32 {
@@ -170,7 +171,7 @@ impl Checkpoint {
                 stated: envelope.crc32,
             });
         }
-        let mut checkpoint: Self = parse(state, "state.")?;
+        let mut checkpoint: Self = parse_json(state).map_err(|error| error.within("state"))?;
         checkpoint.scenario = checkpoint.scenario.checked("the checkpoint's scenario")?;
         Ok(checkpoint)
     }
@@ -267,18 +268,4 @@ pub(super) fn check_finite(state: &State) -> Result<(), CheckpointError> {
 
 fn checksum(bytes: &[u8]) -> String {
     format!("{:08x}", crc32fast::hash(bytes))
-}
-
-fn parse<'t, T: Deserialize<'t>>(text: &'t str, prefix: &str) -> Result<T, CheckpointError> {
-    let mut json = serde_json::Deserializer::from_str(text);
-    let value =
-        serde_path_to_error::deserialize(&mut json).map_err(|error| CheckpointError::Syntax {
-            place: format!("{prefix}{}", error.path()),
-            source: error.into_inner(),
-        })?;
-    json.end().map_err(|source| CheckpointError::Syntax {
-        place: String::from("the end of the file"),
-        source,
-    })?;
-    Ok(value)
 }

@@ -3,19 +3,15 @@
 use thiserror::Error;
 
 use super::checkpoint::CHECKPOINT_FORMAT;
+use crate::files::JsonError;
 use crate::scenario::ScenarioError;
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, Error)]
 pub enum CheckpointError {
     /// It is not the JSON of a checkpoint.
-    #[error("line {}, column {}, at {place}: {source}", .source.line(), .source.column())]
-    Syntax {
-        /// Where in the file.
-        place: String,
-        /// What is wrong there.
-        source: serde_json::Error,
-    },
+    #[error(transparent)]
+    Syntax(#[from] JsonError),
     /// It was written by another version of the program.
     #[error("format: found {found}; allowed: {CHECKPOINT_FORMAT}")]
     Format {

@@ -12,7 +12,8 @@ use tempfile::TempDir;
 use super::folder_error::{FolderError, Occupied};
 use super::manifest::{MANIFEST_FORMAT, Manifest};
 use crate::files::{
-    WRITING, clean, read_text, stated_format, sync_folder, without_path, write_atomically,
+    WRITING, clean, parse_json, read_text, stated_format, sync_folder, without_path,
+    write_atomically,
 };
 use crate::scenario::MAX_FILE_BYTES;
 
@@ -256,11 +257,7 @@ impl RunFolder {
                 "format: found {found}; allowed: {MANIFEST_FORMAT}"
             )));
         }
-        let mut json = serde_json::Deserializer::from_str(&text);
-        let mut manifest: Manifest = serde_path_to_error::deserialize(&mut json)
-            .map_err(|error| wrong(format!("at {}: {}", error.path(), error.inner())))?;
-        json.end()
-            .map_err(|error| wrong(format!("at the end of the file: {error}")))?;
+        let mut manifest: Manifest = parse_json(&text).map_err(|error| wrong(error.to_string()))?;
         manifest.scenario = manifest
             .scenario
             .checked("scenario")

@@ -106,7 +106,8 @@ impl Plan {
     }
 
     /// Whether `name` is that of a plan rather than of a scenario: an embedded plan, the
-    /// folder of a study, or a JSON file that has arms, or speaks of them where it is broken.
+    /// folder of a study, or a JSON file that has arms or scenarios, or speaks of them where
+    /// it is broken.
     #[must_use]
     pub fn is_plan(name: &str) -> bool {
         let Some(path) = file_of(name) else {
@@ -116,9 +117,11 @@ impl Plan {
             return true;
         }
         let text = read_text(&path, MAX_PLAN_BYTES).unwrap_or_default();
+        // Either may be what is missing.
+        let mut keys = ["arms", "scenarios"].into_iter();
         match serde_json::from_str::<Value>(&text) {
-            Ok(json) => json.get("arms").is_some(),
-            Err(_) => text.contains("\"arms\""),
+            Ok(json) => keys.any(|key| json.get(key).is_some()),
+            Err(_) => keys.any(|key| text.contains(&format!("{key:?}"))),
         }
     }
 

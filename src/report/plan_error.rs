@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::arm::ArmError;
-use crate::files::ReadError;
+use crate::files::{JsonError, ReadError};
 use crate::scenario::ScenarioError;
 
 /// Why a plan cannot be used.
@@ -25,7 +25,15 @@ pub enum PlanError {
         /// Why not.
         source: ReadError,
     },
-    /// The text is not JSON of a plan, or says what cannot be.
+    /// The text is not JSON of a plan.
+    #[error("{file}: {source}")]
+    Syntax {
+        /// The file.
+        file: String,
+        /// Where, and what is wrong there.
+        source: JsonError,
+    },
+    /// It says what cannot be.
     #[error("{file}: at {place}: {message}")]
     Invalid {
         /// The file, or what the plan was made from.

@@ -10,6 +10,7 @@ use super::arm::{Arm, Base};
 use super::numbers::Numbers;
 use super::plan::{Plan, Reevaluation};
 use super::plan_error::PlanError;
+use crate::files::parse_json;
 use crate::scenario::{Scenario, ScenarioError};
 
 /// A study: scenarios, arms and seeds, each scenario with each arm and seed a run.
@@ -72,17 +73,10 @@ enum ArmEntry {
 impl PlanFile {
     /// Parses plan `text`; `file` names it in errors.
     pub(super) fn parse(text: &str, file: &str) -> Result<Self, PlanError> {
-        let invalid = |place: String, message: String| PlanError::Invalid {
+        parse_json(text).map_err(|source| PlanError::Syntax {
             file: file.to_owned(),
-            place,
-            message,
-        };
-        let mut json = serde_json::Deserializer::from_str(text);
-        let plan = serde_path_to_error::deserialize(&mut json)
-            .map_err(|error| invalid(place(error.path()), error.inner().to_string()))?;
-        json.end()
-            .map_err(|error| invalid(String::from("the end of the plan"), error.to_string()))?;
-        Ok(plan)
+            source,
+        })
     }
 
     /// The plan with its scenarios and arms written out; `file` names it in errors, scenario
@@ -114,13 +108,6 @@ impl PlanFile {
             control: self.control,
             reevaluation: self.reevaluation,
         })
-    }
-}
-
-fn place(path: &serde_path_to_error::Path) -> String {
-    match path.to_string().as_str() {
-        "." | "?" => String::from("the top level"),
-        path => path.to_owned(),
     }
 }
 

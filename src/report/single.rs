@@ -11,7 +11,7 @@ use super::arm::{Arm, ArmError, Base};
 use super::runner::StudyControls;
 use super::study::{RunId, Study};
 use crate::evolution::{Evolution, Experiment, TreeError, Workers, read_tree};
-use crate::files::{ReadError, read_text, write_atomically};
+use crate::files::{ReadError, parse_json, read_text, write_atomically};
 use crate::lab::{
     Evaluation, FolderError, Keep, Manifest, Outcome, Protocol, RunError, RunFolder, RunOptions,
     SetupError, WorldTask, evaluate, resume, start, with_world,
@@ -315,11 +315,10 @@ fn read<T: for<'t> Deserialize<'t>>(path: PathBuf) -> Result<Option<T>, SingleEr
         path: shown.clone(),
         source,
     })?;
-    let mut json = serde_json::Deserializer::from_str(&text);
-    let value = serde_path_to_error::deserialize(&mut json);
+    let value = parse_json(&text);
     value.map(Some).map_err(|error| SingleError::Misfit {
         path: shown,
-        message: format!("at {}: {}", error.path(), error.inner()),
+        message: error.to_string(),
     })
 }
 

@@ -67,7 +67,7 @@ pub enum StudyError {
         path: String,
     },
     /// The study has no such run.
-    #[error("found run {found:?}; allowed: {allowed}")]
+    #[error("--only: found {found:?}; allowed: {allowed}")]
     NoSuchRun {
         /// What was asked for.
         found: String,
@@ -193,9 +193,7 @@ impl Study {
             false => Ok(found),
             true => Err(StudyError::NoSuchRun {
                 found: name.to_owned(),
-                allowed: format!(
-                    "1 to {last}, or SCENARIO/ARM/seed-N as 'study status' lists them"
-                ),
+                allowed: format!("1 to {last}, or SCENARIO/ARM/seed-N as 'study plan' lists them"),
             }),
         }
     }

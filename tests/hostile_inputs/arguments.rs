@@ -12,7 +12,10 @@ fn wrong_usage_is_refused_with_code_2() {
             &["run", "smoke", "--speed"],
             &["unexpected argument '--speed'"],
         ),
-        (&["run", "smoke", "--seed", "-1"], &["-1"]),
+        (
+            &["run", "smoke", "--seed", "-1"],
+            &["invalid value '-1' for '--seed"],
+        ),
         (
             &["run", "smoke", "--seed", "18446744073709551616"],
             &["18446744073709551616", "--seed"],

@@ -386,12 +386,12 @@ fn a_damaged_run_json_is_refused() {
     let says = |text: &str| victim.says_with("run.json", text.as_bytes());
     assert_says(
         &says(&whole[..whole.len() / 2]),
-        &["run.json: at ", "line "],
+        &["run.json: line ", ", at scenario."],
     );
     assert_says(&says(""), &["run.json: ", "EOF"]);
     assert_says(
         &says(&(whole.clone() + "{}")),
-        &["run.json: at the end of the file: trailing"],
+        &["run.json: line ", ", at the end of the file: trailing"],
     );
     let other = whole.replacen("\"format\": 1", "\"format\": 7, \"new\": 1", 1);
     assert_says(&says(&other), &["run.json: format: found 7; allowed: 1"]);
@@ -405,7 +405,10 @@ fn a_damaged_run_json_is_refused() {
         &["run.json: ", "learning.discount: found 9; allowed: 0 to 1"],
     );
     let other = whole.replacen("\"seed\"", "\"sead\"", 1);
-    assert_says(&says(&other), &["run.json: at sead: unknown field"]);
+    assert_says(
+        &says(&other),
+        &["run.json: line ", ", at sead: unknown field"],
+    );
     fs::remove_file(victim.folder.join("run.json")).unwrap();
     assert_says(
         &victim.says(),

@@ -16,6 +16,7 @@ use super::output::{Done, Failure};
 use super::show::Show;
 use crate::lab::Keep;
 use crate::report::{Arm, Base, Numbers, Plan, Study};
+use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Embedded};
 
 /// Do many runs: scenarios, arms and seeds of a plan.
 ///
@@ -104,14 +105,20 @@ pub(super) struct What {
 impl What {
     /// The study, its folder made if it is not there.
     pub(super) fn study(&self) -> Result<Study, Failure> {
+        let Study { plan, folder } = self.planned()?;
+        Ok(Study::create(plan, &folder)?)
+    }
+
+    /// The study as it is to be; nothing is made.
+    pub(super) fn planned(&self) -> Result<Study, Failure> {
         let plan = self.plan()?;
         let itself = || match self.what.as_slice() {
-            [only] if Study::is_in(Path::new(only)) => Some(Path::new(only)),
+            [only] if Study::is_in(Path::new(only)) => Some(PathBuf::from(only)),
             _ => None,
         };
-        let folder = self.out.as_deref().or_else(itself);
+        let folder = self.out.clone().or_else(itself);
         let folder = folder.ok_or("--out: found none; allowed: the folder of the study")?;
-        Ok(Study::create(plan, folder)?)
+        Ok(Study { plan, folder })
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
@@ -125,6 +132,7 @@ impl What {
             }
             return Ok(Plan::load(only)?);
         }
+        self.refuse_what_is_no_scenario()?;
         let arms = self.arms.iter().map(|name| {
             let base = Base::find(name);
             base.map(Arm::of)
@@ -139,6 +147,28 @@ impl What {
             None => "1..10".parse::<Numbers>()?,
         };
         Ok(Plan::of(&self.what, seeds, arms)?)
+    }
+
+    /// A folder, and a single name that nothing has, may have been meant for a plan or a study.
+    fn refuse_what_is_no_scenario(&self) -> Result<(), Failure> {
+        if let Some(folder) = self.what.iter().find(|name| Path::new(name).is_dir()) {
+            Study::open(Path::new(folder))?;
+            let message = format!("{folder}: found a study beside others; allowed: alone");
+            return Err(message.into());
+        }
+        let names = |all: &[Embedded]| all.iter().map(|known| known.name).collect::<Vec<_>>();
+        let (plans, scenarios) = (names(EMBEDDED_PLANS), names(EMBEDDED));
+        match self.what.as_slice() {
+            [only] if !Path::new(only).exists() && !scenarios.contains(&only.as_str()) => {
+                let (plans, scenarios) = (plans.join(", "), scenarios.join(", "));
+                let message = format!(
+                    "no plan, study or scenario {only:?}: there is no such file or folder, the \
+                     embedded plans are {plans}, the embedded scenarios {scenarios}"
+                );
+                Err(message.into())
+            }
+            _ => Ok(()),
+        }
     }
 }
 

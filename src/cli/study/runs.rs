@@ -18,8 +18,9 @@ use crate::report::{RunId, Stage, Study, StudyControls, carry_out, status};
 
 /// Carries out `study`.
 pub(super) fn main(args: &Args) -> Done {
+    // What is wrong is told before anything is made.
+    let runs = wanted(&args.what.planned()?, &args.only)?;
     let study = args.what.study()?;
-    let runs = wanted(&study, &args.only)?;
     let signals = Caught::now()?;
     let outfit = match args.headless || !Show::is_possible() {
         true => None,
@@ -90,15 +91,19 @@ fn follow(
     Ok(exit)
 }
 
-/// Says how many runs are done; returns how many are not.
+/// Says how many runs are done, and where all of the study are what to do next; returns how
+/// many are not.
 fn tell_done(study: &Study, runs: &[RunId]) -> Result<usize, Failure> {
-    let all = runs.len();
-    let done = status(study)
-        .iter()
-        .filter(|status| status.stage == Stage::Done && runs.contains(&status.run))
-        .count();
+    let (now, all) = (status(study), runs.len());
+    let done = || now.iter().filter(|status| status.stage == Stage::Done);
+    let is_whole = done().count() == now.len();
+    let done = done().filter(|status| runs.contains(&status.run)).count();
     let folder = study.folder.display();
-    output::text(&format!("{done} of {all} runs done in {folder}\n"))?;
+    let next = match is_whole {
+        true => format!("; 'maxq-lab study report {folder}' says what comes out"),
+        false => String::new(),
+    };
+    output::text(&format!("{done} of {all} runs done in {folder}{next}\n"))?;
     Ok(all - done)
 }
 
