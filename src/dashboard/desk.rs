@@ -318,14 +318,15 @@ impl Desk {
         }
     }
 
-    /// The individual of the generation shown that the selected one is compared with: the
-    /// marked one, else the best, else the second.
+    /// The individual that is looked at, and the one of its generation that it is compared
+    /// with: the marked one, else the best, else the second.
     #[must_use]
-    pub fn rival(&self) -> Option<&RankedRecord> {
-        let (selected, individuals) = (self.selected()?, &self.shown()?.individuals);
+    pub fn rivals(&self) -> Option<[&RankedRecord; 2]> {
+        let (generation, selected) = self.looked_at()?;
+        let individuals = &self.live.generation(generation)?.individuals;
         let mut others = individuals.iter().filter(|other| other.id != selected.id);
         let marked = others.clone().find(|other| Some(other.id) == self.marked);
-        marked.or_else(|| others.next())
+        Some([selected, marked.or_else(|| others.next())?])
     }
 
     /// The hierarchy of an individual; `None` where its text is none of this world.

@@ -178,7 +178,7 @@ fn the_marked_individual_is_what_others_are_compared_with() {
     screen.press("6 j j j M");
     let marked = screen.0.app().desk().selected().unwrap().id;
     screen.press("b c");
-    assert_eq!(screen.0.app().desk().rival().unwrap().id, marked);
+    assert_eq!(screen.0.app().desk().rivals().unwrap()[1].id, marked);
     let text = screen.text();
     assert!(
         text.contains(&format!("individual {marked}, generation 6")),
@@ -188,7 +188,7 @@ fn the_marked_individual_is_what_others_are_compared_with() {
     // Who is marked is not compared with himself.
     screen.press("j j j");
     assert_eq!(screen.0.app().desk().selected().unwrap().id, marked);
-    assert_ne!(screen.0.app().desk().rival().unwrap().id, marked);
+    assert_ne!(screen.0.app().desk().rivals().unwrap()[1].id, marked);
 }
 
 fn exported(screen: &mut Screen, keys: &str) -> String {

@@ -150,6 +150,27 @@ fn arena_and_hierarchy_speak_of_one_individual() {
     );
 }
 
+/// So is the comparison: both individuals are of the generation that is looked at.
+#[test]
+fn two_are_compared_as_they_were_together() {
+    let mut screen = live();
+    screen.0.update(Input::Resize(120, 40));
+    screen.press("space");
+    let generation = screen.0.app().desk().stage.subject().unwrap().generation;
+    for event in &foraging().events[4..] {
+        screen.tell(event.clone());
+        screen.wait(1.0);
+    }
+    screen.press("c");
+    let text = screen.text();
+    assert_eq!(
+        text.matches(&format!(", generation {generation}")).count(),
+        2,
+        "{text}"
+    );
+    assert_eq!(text.matches("selects").count(), 2, "{text}");
+}
+
 #[test]
 fn evolution_is_steered() {
     let mut screen = live();

@@ -4,21 +4,22 @@
 use maxq_lab::hierarchy::Glyphs::Unicode;
 use maxq_lab::lab::specimen::Start;
 
+use super::common;
 use super::frames::{MIDDLE, SMALL};
-use super::recorded::{cells, foraging};
+use super::recorded::{Recorded, cells, foraging};
 use super::textbook::learned;
 
 /// The text of a panel, its lines joined by blanks.
 fn panel(text: &str, title: &str) -> String {
     let lines: Vec<Vec<char>> = text.lines().map(|line| line.chars().collect()).collect();
-    let title: Vec<char> = format!(" {title} ").chars().collect();
     let found = lines.iter().enumerate().find_map(|(row, line)| {
-        let windows = line.windows(title.len());
-        Some((row, windows.into_iter().position(|part| part == title)?))
+        let line: String = line.iter().collect();
+        let tops = ["╭ ", "╭▸ "].map(|corner| line.find(&format!("{corner}{title} ")));
+        let top = tops.into_iter().flatten().next()?;
+        Some((row, line[..top].chars().count()))
     });
-    let (row, column) = found.unwrap_or_else(|| panic!("{title:?} in\n{text}"));
-    let left = (0..column).rev().find(|&at| lines[row][at] == '╭').unwrap();
-    let right = (column..).find(|&at| lines[row][at] == '╮').unwrap();
+    let (row, left) = found.unwrap_or_else(|| panic!("{title:?} in\n{text}"));
+    let right = (left..).find(|&at| lines[row][at] == '╮').unwrap();
     let inside = lines[row + 1..].iter().take_while(|line| line[left] == '│');
     let inside = inside.map(|line| line[left + 1..right].iter().collect::<String>());
     let joined = inside.collect::<Vec<_>>().join(" ");
@@ -113,6 +114,28 @@ fn the_stepper_says_everything_in_little_room() {
             "{rule}: {line}"
         );
         assert!(!line.contains('…'), "{line}");
+    }
+}
+
+/// Below the table of the population, where there is room.
+#[test]
+fn the_hierarchy_of_the_selected_individual_is_written_in_full() {
+    let mut screen = foraging().screen("dark", Unicode, SMALL);
+    screen.press("6 j j");
+    let selected = screen.0.app().desk().selected().unwrap();
+    let whole = format!("{}: {}", selected.id, selected.tree);
+    let population = panel(&screen.text(), "Population");
+    assert!(population.contains(&whole), "{whole}: {population}");
+}
+
+/// Where chance takes the place of fitness, the first in rank are not the best.
+#[test]
+fn ranks_by_chance_are_called_so() {
+    let run = Recorded::new(&common::short(&["evolution.selection=random"]));
+    let mut screen = run.screen("dark", Unicode, MIDDLE);
+    for (key, words) in [("4", "the 4 first by chance"), ("6", "ranked by chance")] {
+        screen.press(key);
+        assert!(screen.text().contains(words), "{}", screen.text());
     }
 }
 

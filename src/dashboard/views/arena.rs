@@ -55,9 +55,10 @@ impl View for Arena {
         };
         draw_scene(desk, &scene, above, buffer);
         let below = Rect {
+            x: area.x + 1,
             y: area.y + above.height,
+            width: area.width.saturating_sub(1),
             height: foot,
-            ..area
         };
         draw_foot(desk, snapshot.as_ref(), below, buffer);
     }
@@ -101,7 +102,8 @@ fn state_rows(desk: &Desk, area: Rect) -> u16 {
         let texts = cases.iter();
         texts.map(move |case| state(desk, state_type, *case))
     });
-    let rows = texts.map(|text| wrapped(&text, area.width.into(), "").len());
+    let columns = usize::from(area.width.saturating_sub(1));
+    let rows = texts.map(|text| wrapped(&text, columns, "").len());
     rows.max().unwrap_or(1).min(STATE) as u16
 }
 

@@ -12,7 +12,7 @@ use super::lines::{Pen, draw_lines, percent};
 use crate::dashboard::desk::{Chosen, Desk};
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, put, width};
+use crate::dashboard::look::{Paint, fitted, put, width, wrapped};
 use crate::evolution::RankedRecord;
 use crate::hierarchy::{Tree, draw, structural_difference, to_dot};
 use crate::lab::specimen::Specimen;
@@ -54,7 +54,7 @@ struct Side<'d> {
 
 impl Compare {
     fn sides<'d>(&'d self, desk: &'d Desk) -> Option<[Side<'d>; 2]> {
-        let records = [desk.selected()?, desk.rival()?];
+        let records = desk.rivals()?;
         let [one, other] = [desk.tree(records[0])?, desk.tree(records[1])?];
         let unlike = [unlike(&one, &other), unlike(&other, &one)];
         let known = self
@@ -113,7 +113,7 @@ impl Side<'_> {
         let look = &desk.look;
         let record = self.record;
         let steps = record.fitness_steps as f64 / record.trials.len().max(1) as f64;
-        let generation = desk.shown().map_or(0, |shown| shown.generation);
+        let generation = desk.looked_at().map_or(0, |(generation, _)| generation);
         let head = format!("individual {}, generation {generation}", record.id);
         let delivered = record.trials.iter().filter(|trial| trial.delivered).count();
         let facts = [
@@ -145,7 +145,14 @@ impl Side<'_> {
     fn selection_lines(&self, desk: &Desk, other: &Self, columns: usize) -> Vec<Line<'static>> {
         let look = &desk.look;
         let Some(selection) = self.selection else {
-            return Vec::new();
+            let why = desk
+                .stage
+                .refused()
+                .unwrap_or("what they select is being worked out");
+            let lines = wrapped(why, columns, "").into_iter();
+            return lines
+                .map(|line| Pen::new(look).text(line, Paint::Dim).line())
+                .collect();
         };
         let mut lines = vec![Pen::new(look).text("selects", Paint::Dim).line()];
         for (index, of) in selection.iter().enumerate() {
@@ -240,7 +247,7 @@ impl View for Compare {
     }
 
     fn can(&self, desk: &Desk, action: Action) -> bool {
-        action != Action::Down || desk.rival().is_some()
+        action != Action::Down || desk.rivals().is_some()
     }
 
     /// The selected individual changes by rank.
@@ -260,7 +267,7 @@ impl View for Compare {
     }
 
     fn prepare(&mut self, desk: &Desk) {
-        let Some((one, other)) = desk.selected().zip(desk.rival()) else {
+        let Some([one, other]) = desk.rivals() else {
             return;
         };
         let Some(state) = desk.stage.population() else {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::{THROUGH_TIME, View, nothing_yet, over_generations};
+use super::{THROUGH_TIME, View, by_chance, nothing_yet, over_generations};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Look, Paint, put, width};
@@ -40,7 +40,8 @@ impl View for Fitness {
             None | Some(0) => String::from("time steps a trial"),
             Some(half) => {
                 let separator = desk.look.signs.separator;
-                format!("time steps a trial {separator} the {half} best")
+                let ranked = by_chance(desk).map_or("best", |_| "first by chance");
+                format!("time steps a trial {separator} the {half} {ranked}")
             }
         }
     }
@@ -59,6 +60,7 @@ impl View for Fitness {
             Constraint::Length(u16::from(two)),
         ];
         let [above, legend, below, difference] = Layout::vertical(rows).areas(area);
+        let [above, below] = [above, below].map(indented);
         let mut difference_chart = difference_chart(desk);
         if two {
             // One axis for both.
@@ -108,6 +110,15 @@ impl View for Fitness {
          individual scores differently in every generation, and the best is the luckiest too.\n\
          Below, the mean structural difference of the better half to the best (Figure 4.7): 0\n\
          when all have one structure, which ends evolution."
+    }
+}
+
+/// An area without its first column.
+fn indented(area: Rect) -> Rect {
+    Rect {
+        x: area.x + 1.min(area.width),
+        width: area.width.saturating_sub(1),
+        ..area
     }
 }
 

@@ -30,6 +30,7 @@ use super::keys::Action;
 use super::look::{Chart, Curve, Paint, axis_end, fitted, put};
 use super::mouse::Clicked;
 use crate::evolution::Origin;
+use crate::scenario::Selection;
 use crate::worlds::Catalogue;
 use crate::worlds::scene::Snapshot;
 
@@ -233,6 +234,12 @@ fn over_generations(desk: &Desk, curves: Vec<Curve>, least: [f64; 2]) -> Chart {
         chart.across[1] = axis_end(latest, limit) as f64;
     }
     chart
+}
+
+/// That ranks do not tell who is better, where they do not.
+fn by_chance(desk: &Desk) -> Option<&'static str> {
+    let selection = desk.scenario().evolution.selection;
+    (selection == Selection::Random).then_some("ranked by chance")
 }
 
 /// How fast the rollout goes, and whether it does.

@@ -14,7 +14,7 @@ pub(super) struct Overview;
 /// Columns below which there is room for four panels only.
 const WIDE: u16 = 110;
 /// Least columns of the arena.
-const ARENA: u16 = 29;
+const ARENA: u16 = 30;
 /// Least columns of the population.
 const POPULATION: u16 = 44;
 /// Columns of the status panel.

@@ -165,8 +165,8 @@ fn draw_course(
     let shares: Vec<_> = shares.collect();
     let columns = usize::from(line.width.saturating_sub(2));
     let text = sparkline(&shares, [0.0, 1.0], columns, desk.look.signs);
-    let style = desk.look.style(paint(desk, name));
-    put(buffer, line, (1, 0), &text, style);
+    // Not in the colour of the bar above it: the two would be one.
+    put(buffer, line, (1, 0), &text, desk.look.style(Paint::Dim));
 }
 
 /// The paint of a primitive subtask.

@@ -5,11 +5,11 @@ use std::fmt::Write;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use super::{View, nothing_yet, origin};
+use super::{View, by_chance, nothing_yet, origin};
 use crate::dashboard::desk::{Chosen, Desk};
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, one_line, put};
+use crate::dashboard::look::{Paint, fitted, one_line, put, wrapped};
 use crate::dashboard::mouse::{Clicked, line_at};
 use crate::evolution::RankedRecord;
 
@@ -174,6 +174,21 @@ fn draw_individual(
     }
 }
 
+/// Writes the whole hierarchy of the selected individual, as much of it as there is room for.
+fn draw_whole(desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    let Some(individual) = desk.selected() else {
+        return;
+    };
+    let look = &desk.look;
+    let columns = usize::from(area.width.saturating_sub(2));
+    let text = format!("{}: {}", individual.id, one_line(&individual.tree));
+    let lines = wrapped(&text, columns, "  ");
+    let is_whole = lines.len() <= usize::from(area.height);
+    for (row, line) in (0..area.height).zip(lines.iter().filter(|_| is_whole)) {
+        put(buffer, area, (1, row), line, look.style(Paint::Dim));
+    }
+}
+
 impl Population {
     fn sorted<'d>(&self, desk: &'d Desk) -> Vec<&'d RankedRecord> {
         let Some(record) = desk.shown() else {
@@ -259,8 +274,10 @@ impl View for Population {
         desk.shown().map_or(String::new(), |record| {
             let count = record.individuals.len();
             let separator = desk.look.signs.separator;
+            let ranked =
+                by_chance(desk).map_or(String::new(), |words| format!(" {separator} {words}"));
             format!(
-                "generation {} {separator} {count} individuals",
+                "generation {}{ranked} {separator} {count} individuals",
                 record.generation
             )
         })
@@ -288,6 +305,17 @@ impl View for Population {
                 buffer,
             );
         }
+        let used = area.height.min(
+            desk.shown()
+                .map_or(0, |shown| shown.individuals.len() as u16)
+                + 2,
+        );
+        let rest = Rect {
+            y: area.y + used,
+            height: area.height - used,
+            ..area
+        };
+        draw_whole(desk, rest, buffer);
     }
 
     fn hints(&self) -> &'static [Action] {

@@ -98,8 +98,8 @@ fn story(individual: &RankedRecord) -> Vec<(String, Paint)> {
                 .map(|kept| format!("{} from {}", kept.subtask, kept.from))
                 .collect();
             story.push((made, Paint::Text));
-            story.push((format!("inherited: {}", listed(&kept)), Paint::Good));
-            story.push((format!("set back: {}", listed(reset)), Paint::Notice));
+            story.push((format!("inherited: {}", listed(&kept)), Paint::Text));
+            story.push((format!("set back: {}", listed(reset)), Paint::Dim));
         }
         other => story.push((origin(other), Paint::Text)),
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use ratatui::text::Line;
 
 use crate::dashboard::desk::Desk;
-use crate::dashboard::look::{Paint, fitted, one_line};
+use crate::dashboard::look::{Paint, one_line, wrapped};
 use crate::dashboard::views::lines::Pen;
 use crate::evolution::Origin;
 use crate::lab::specimen::{Ancestor, Lineage};
@@ -13,7 +13,7 @@ use crate::lab::specimen::{Ancestor, Lineage};
 /// The line along which the tree was handed down, the individual first.
 ///
 /// ```text
-///  362 born in generation 24   rank 1   1029 steps
+///  362 generation 24   rank 1   128.6 steps a trial
 ///      340 at FindNest, with FindNest of 351
 ///      inherited Capture from 340, FindNest from 351   reset Root, Deliver
 ///  340 born in ...
@@ -23,16 +23,23 @@ pub(super) fn lines(desk: &Desk, lineage: &Lineage, columns: usize) -> Vec<Line<
     let known = lineage.ancestors.len().saturating_sub(1);
     let note = format!("{known} ancestors in all; the line that the root came down:");
     let mut lines = vec![Pen::new(look).text(note, Paint::Dim).line()];
+    let individuals = desk.shown().map(|record| &record.individuals);
+    let scored = individuals
+        .and_then(|all| all.first())
+        .map_or(1, |one| one.trials.len());
     for ancestor in lineage.line() {
         let head = format!(
-            " generation {:>3}   rank {:>2}   {} steps",
-            ancestor.born, ancestor.rank, ancestor.fitness_steps
+            " generation {:>3}   rank {:>2}   {:.1} steps a trial",
+            ancestor.born,
+            ancestor.rank,
+            ancestor.fitness_steps as f64 / scored.max(1) as f64
         );
         let pen = Pen::new(look).right(&ancestor.id.to_string(), 5, Paint::Title);
         lines.push(pen.text(head, Paint::Text).line());
         for (text, paint) in made(ancestor) {
-            let text = fitted(&one_line(&text), columns.saturating_sub(6), look.signs);
-            lines.push(Pen::new(look).to(6).text(text, paint).line());
+            let texts = wrapped(&one_line(&text), columns.saturating_sub(6), "  ");
+            let texts = texts.into_iter();
+            lines.extend(texts.map(|text| Pen::new(look).to(6).text(text, paint).line()));
         }
     }
     lines
@@ -63,8 +70,8 @@ fn made(ancestor: &Ancestor) -> Vec<(String, Paint)> {
                     ),
                     Paint::Text,
                 ),
-                (format!("inherited {given}"), Paint::Good),
-                (format!("reset {}", reset.join(", ")), Paint::Notice),
+                (format!("inherited {given}"), Paint::Text),
+                (format!("reset {}", reset.join(", ")), Paint::Dim),
             ]
         }
         Origin::Copied { from } => vec![(format!("a copy of {from}"), Paint::Text)],
