@@ -63,7 +63,7 @@ const BROKEN: &[(&str, &str, &str)] = &[
     (
         "unknown-world.json",
         "at world",
-        "`maze`, expected one of `cliff`, `foraging`, ",
+        "unknown variant `maze`, expected one of `",
     ),
     ("not-utf8.json", "byte 31", "is not UTF-8"),
     ("empty.json", "line 1, column 0", "EOF"),
