@@ -99,12 +99,15 @@ proptest! {
         generations in 1_u64..5,
         shared: bool,
         initial in -1000.0..1000.0_f64,
+        mutation in 0.0..=1.0_f64,
     ) {
         let learning = if shared { "shared" } else { "frozen" };
         let scenario: Scenario = short(&[
             &format!("evolution.generation_limit={generations}"),
             &format!("learning.primitive_learning={learning}"),
             &format!("learning.initial_parameter={initial}"),
+            &format!("evolution.prune_probability={mutation}"),
+            &format!("evolution.grow_probability={mutation}"),
         ]);
         let record = common::record(&scenario, seed, &threads(2));
         assert_round_trip(&record.checkpoint, "a run");

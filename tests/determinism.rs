@@ -168,6 +168,8 @@ fn every_switch_is_deterministic_and_matters() {
         "learning.pseudo_reward=all",
         "evolution.selection=random",
         "evolution.inheritance=darwinian",
+        "evolution.prune_probability=0.5",
+        "evolution.grow_probability=0.5",
         "evolution.variation=random_trees",
         "evolution.variation=none",
         "world.foraging.features.rbf_width=variance",

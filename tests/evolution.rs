@@ -14,6 +14,8 @@ mod breeding;
 mod crossover;
 #[path = "evolution/generation.rs"]
 mod generation;
+#[path = "evolution/mutation.rs"]
+mod mutation;
 #[path = "evolution/policy.rs"]
 mod policy;
 mod trees;

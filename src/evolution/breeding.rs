@@ -1,10 +1,11 @@
-//! The next generation: reproduction, death, tournaments, crossover.
+//! The next generation: reproduction, death, tournaments, crossover, mutation.
 
 use rand::RngExt;
 
 use super::crossover::crossover;
-use super::experiment::newborn;
 use super::individual::{Individual, Origin};
+use super::mutation::mutated;
+use super::newborn::newborn;
 use crate::hierarchy::random_tree;
 use crate::learning::{Gate, Stopped};
 use crate::random::Stream;
@@ -17,8 +18,8 @@ const MAX_PARENT_DRAWS: usize = 20;
 /// The population after `ranked`, which is sorted from best to worst.
 ///
 /// The best are reproduced, as many of the worst die, and the places left are filled
-/// by crossover of parents that win tournaments among the survivors - or as the
-/// scenario's `variation` says. `next_id` is the id of the next new individual, and moves
+/// by crossover of parents that win tournaments among the survivors, and mutation, where
+/// the scenario has any - or as the scenario's `variation` says. `next_id` is the id of the next new individual, and moves
 /// on.
 ///
 /// # Errors
@@ -63,7 +64,8 @@ pub(super) fn breed(
             crossover(a, b, ids, scenario, catalogue, rng)
         });
         let copies = || [0, 1].map(|i| copy(&survivors[last[i]], ids[i]));
-        population.extend(crossed.unwrap_or_else(copies));
+        let offspring = crossed.unwrap_or_else(copies);
+        population.extend(offspring.map(|child| mutated(child, scenario, catalogue, rng)));
     }
     population.truncate(ranked.len());
     Ok(population)
@@ -112,7 +114,10 @@ fn tournament(candidates: &[usize], size: usize, rng: &mut Stream) -> usize {
 fn copy(from: &Individual, id: u64) -> Individual {
     Individual {
         id,
-        origin: Origin::Copied { from: from.id },
+        origin: Origin::Copied {
+            from: from.id,
+            mutations: Vec::new(),
+        },
         hierarchy: from.hierarchy.clone(),
         skills: from.skills.clone(),
     }

@@ -3,11 +3,12 @@
 use rand::RngExt;
 
 use super::individual::{Individual, Inherited, Origin, Parent};
+use super::newborn::anew;
 use crate::hierarchy::check;
-use crate::learning::{CompositeValues, Hierarchy};
+use crate::learning::Hierarchy;
 use crate::random::Stream;
-use crate::scenario::{Inheritance, LearningModel, Scenario};
-use crate::worlds::{Catalogue, SubtaskId};
+use crate::scenario::{Inheritance, Scenario};
+use crate::worlds::Catalogue;
 
 /// Pairs of crossover sites drawn before two parents count as incompatible. Trees
 /// have some ten nodes, so parents that fail here have hardly a valid pair.
@@ -73,7 +74,7 @@ fn offspring(
         let name = subtask.name(catalogue).to_owned();
         if darwinian || path.contains(&node) {
             let children: Vec<_> = tree.children(node).map(|c| tree.subtask(c)).collect();
-            *value = initial(&scenario.learning, subtask, &children, catalogue);
+            *value = anew(&scenario.learning, subtask, &children, catalogue);
             reset.push(name);
         } else {
             let from = if graft.contains(&node) {
@@ -106,19 +107,9 @@ fn offspring(
             donor: parent(donor, donor_site),
             inherited,
             reset,
+            mutations: Vec::new(),
         },
         hierarchy: hierarchy.unwrap_or_else(|| unreachable!("values were spliced as the tree was")),
         skills,
     }
-}
-
-fn initial(
-    learning: &LearningModel,
-    subtask: SubtaskId,
-    children: &[SubtaskId],
-    catalogue: &Catalogue,
-) -> CompositeValues {
-    let temperature = learning.initial_temperature as f32;
-    let parameter = learning.initial_parameter as f32;
-    CompositeValues::new(subtask, children, catalogue, temperature, parameter)
 }

@@ -7,7 +7,7 @@ use super::turns::Task;
 use crate::hierarchy::{self, TextError, Tree, TypingError};
 use crate::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Stopped, Trainee};
 use crate::random::{Purpose, stream};
-use crate::scenario::{LearningModel, Scenario};
+use crate::scenario::Scenario;
 use crate::worlds::{Catalogue, World};
 
 /// Control steps of one turn of a primitive subtask's training: short beside the training,
@@ -77,7 +77,7 @@ impl<W: World> Experiment<W> {
     /// A hierarchy of this shape that has learned nothing.
     #[must_use]
     pub fn newborn(&self, tree: Tree) -> Hierarchy {
-        newborn(tree, &self.scenario.learning, self.catalogue())
+        super::newborn::newborn(tree, &self.scenario.learning, self.catalogue())
     }
 
     /// An agent with a hierarchy and the primitive subtasks, ready for the scenario's trials.
@@ -138,13 +138,6 @@ impl<W: World> Task for Lesson<'_, W> {
     fn turn(&mut self) -> Result<(), Stopped> {
         self.trainee.train(LESSON_STEPS, self.gate)
     }
-}
-
-/// A hierarchy of this shape that has learned nothing.
-pub(super) fn newborn(tree: Tree, learning: &LearningModel, catalogue: &Catalogue) -> Hierarchy {
-    let temperature = learning.initial_temperature as f32;
-    let initial = learning.initial_parameter as f32;
-    Hierarchy::new(tree, catalogue, temperature, initial)
 }
 
 /// Reads a hierarchy and checks the typing rules.

@@ -1,5 +1,7 @@
 //! Individuals and where they come from.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::learning::{Hierarchy, Skills};
@@ -36,15 +38,61 @@ pub enum Origin {
         donor: Parent,
         /// Composite subtasks whose learned values were inherited.
         inherited: Vec<Inherited>,
-        /// Composite subtasks that were set back to initial values.
+        /// Composite subtasks that were set back to initial values, or are new.
         reset: Vec<String>,
+        /// What mutation changed afterwards.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        mutations: Vec<Mutation>,
     },
     /// A copy with learned values of a parent, made where no crossover of any parents
     /// drawn obeyed the rules.
     Copied {
         /// The individual copied.
         from: u64,
+        /// What mutation changed afterwards.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        mutations: Vec<Mutation>,
     },
+}
+
+impl Origin {
+    /// What mutation changed in it, in order.
+    #[must_use]
+    pub fn mutations(&self) -> &[Mutation] {
+        match self {
+            Self::Crossover { mutations, .. } | Self::Copied { mutations, .. } => mutations,
+            Self::HandCoded | Self::Random | Self::Reproduced => &[],
+        }
+    }
+}
+
+/// A change of an offspring (Thesis chapter 5).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Mutation {
+    /// A child of a composite subtask is gone, with all below it.
+    Pruned {
+        /// The composite subtask.
+        parent: String,
+        /// The child, as text.
+        subtree: String,
+    },
+    /// A composite subtask has a child more.
+    Grown {
+        /// The composite subtask. It and all above it were set back to initial values.
+        parent: String,
+        /// The child, as text.
+        subtree: String,
+    },
+}
+
+impl fmt::Display for Mutation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pruned { parent, subtree } => write!(f, "{subtree} pruned from {parent}"),
+            Self::Grown { parent, subtree } => write!(f, "{subtree} grown on {parent}"),
+        }
+    }
 }
 
 /// A parent and its crossover site.

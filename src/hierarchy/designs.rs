@@ -19,7 +19,7 @@ const MAX_DRAWS: usize = 10_000;
 pub fn complete(catalogue: &Catalogue) -> Tree {
     let mut preorder = vec![(SubtaskId::ROOT, 1)];
     complete_below(SubtaskId::ROOT, 2, catalogue, &mut preorder);
-    tree_of(&preorder)
+    Tree::of(&preorder)
 }
 
 fn complete_below(
@@ -66,7 +66,7 @@ pub fn flat(catalogue: &Catalogue) -> Tree {
         .into_iter()
         .chain(primitives)
         .collect();
-    tree_of(&preorder)
+    Tree::of(&preorder)
 }
 
 /// A random hierarchy that obeys the rules.
@@ -94,6 +94,28 @@ pub fn random_tree(catalogue: &Catalogue, maximum_depth: usize, rng: &mut Stream
             .then_some(tree)
     });
     drawn.unwrap_or_else(|| flat(catalogue))
+}
+
+/// A subtask with children drawn as those of a random hierarchy are, of at most `levels`
+/// levels, for a place in `tree`: composite subtasks of that do not occur in it.
+/// It need not obey the rules.
+pub(crate) fn random_subtree(
+    subtask: SubtaskId,
+    tree: &Tree,
+    catalogue: &Catalogue,
+    levels: usize,
+    rng: &mut Stream,
+) -> Tree {
+    let mut used = vec![false; catalogue.subtasks.len()];
+    for node in tree.nodes() {
+        used[node.subtask.index()] = true;
+    }
+    used[subtask.index()] = true;
+    let mut preorder = vec![(subtask, 1)];
+    if catalogue.subtask(subtask).is_composite() {
+        grow(subtask, 2, levels, catalogue, &mut used, &mut preorder, rng);
+    }
+    Tree::of(&preorder)
 }
 
 fn grow(
@@ -136,10 +158,6 @@ fn grow(
             );
         }
     }
-}
-
-fn tree_of(preorder: &[(SubtaskId, usize)]) -> Tree {
-    Tree::from_preorder(preorder).unwrap_or_else(|| unreachable!("the depths are those of a tree"))
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ mod text;
 mod tree;
 mod typing;
 
+pub(crate) use designs::random_subtree;
 pub use designs::{complete, flat, random_tree};
 pub use difference::structural_difference;
 pub use dot::to_dot;

@@ -89,20 +89,52 @@ impl Tree {
         self.nodes.iter().map(|node| node.depth).max().unwrap_or(0)
     }
 
+    /// The subtree at `node` as a tree of its own.
+    #[must_use]
+    pub fn at(&self, node: usize) -> Self {
+        Self::of(&self.preorder(self.subtree(node), 1))
+    }
+
+    /// This tree without the subtree at `node`, which is not the root.
+    #[must_use]
+    pub fn pruned(&self, node: usize) -> Self {
+        let mut all = self.preorder(0..self.nodes.len(), 1);
+        all.drain(self.subtree(node));
+        Self::of(&all)
+    }
+
+    /// This tree with another as the last child of `parent`.
+    #[must_use]
+    pub fn grown(&self, parent: usize, child: &Self) -> Self {
+        let mut all = self.preorder(0..self.nodes.len(), 1);
+        let end = self.nodes[parent].end;
+        let depth = self.nodes[parent].depth + 1;
+        all.splice(end..end, child.preorder(0..child.nodes.len(), depth));
+        Self::of(&all)
+    }
+
     /// This tree with the subtree at `site` replaced by the donor's subtree at
     /// `donor_site`. `site` is not the root.
     #[must_use]
     pub fn grafted(&self, site: usize, donor: &Self, donor_site: usize) -> Self {
-        let preorder = |tree: &Self, range: Range<usize>, depth: usize| -> Vec<_> {
-            let base = tree.nodes[range.start].depth;
-            let nodes = tree.nodes[range].iter();
-            nodes
-                .map(|node| (node.subtask, node.depth - base + depth))
-                .collect()
-        };
-        let mut all = preorder(self, 0..self.nodes.len(), 1);
-        let graft = preorder(donor, donor.subtree(donor_site), self.nodes[site].depth);
+        let graft = donor.preorder(donor.subtree(donor_site), self.nodes[site].depth);
+        let mut all = self.preorder(0..self.nodes.len(), 1);
         all.splice(self.subtree(site), graft);
-        Self::from_preorder(&all).unwrap_or_else(|| self.clone())
+        Self::of(&all)
+    }
+
+    /// The nodes of a subtree, its top at `depth`.
+    fn preorder(&self, subtree: Range<usize>, depth: usize) -> Vec<(SubtaskId, usize)> {
+        let base = self.nodes[subtree.start].depth;
+        let nodes = self.nodes[subtree].iter();
+        nodes
+            .map(|node| (node.subtask, node.depth - base + depth))
+            .collect()
+    }
+
+    /// The tree of nodes that were taken from trees.
+    pub(super) fn of(preorder: &[(SubtaskId, usize)]) -> Self {
+        Self::from_preorder(preorder)
+            .unwrap_or_else(|| unreachable!("the depths are those of a tree"))
     }
 }

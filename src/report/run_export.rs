@@ -21,6 +21,7 @@ pub fn individuals(run: &RunSource) -> Table {
         "rank",
         "id",
         "origin",
+        "mutations",
         "fitness_steps",
         "mean_trial_steps",
         "delivered_trials",
@@ -47,6 +48,7 @@ pub fn individuals(run: &RunSource) -> Table {
                 individual.rank.to_string(),
                 individual.id.to_string(),
                 origin(&individual.origin).to_owned(),
+                mutations(&individual.origin),
                 individual.fitness_steps.to_string(),
                 (individual.fitness_steps as f64 / individual.trials.len() as f64).to_string(),
                 delivered.to_string(),
@@ -71,6 +73,11 @@ fn origin(origin: &Origin) -> &'static str {
         Origin::Crossover { .. } => "crossover",
         Origin::Copied { .. } => "copied",
     }
+}
+
+fn mutations(origin: &Origin) -> String {
+    let words: Vec<_> = origin.mutations().iter().map(ToString::to_string).collect();
+    words.join("; ")
 }
 
 /// The run's generations and what they come from.

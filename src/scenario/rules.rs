@@ -107,6 +107,8 @@ fn evolution(check: &mut Check, evolution: &EvolutionModel) {
     check.range("maximum_depth", evolution.maximum_depth, 2..=8);
     check.range("generation_limit", evolution.generation_limit, 1..=100_000);
     check.range("trial_step_limit", evolution.trial_step_limit, 1..=100_000);
+    check.range("prune_probability", evolution.prune_probability, 0.0..=1.0);
+    check.range("grow_probability", evolution.grow_probability, 0.0..=1.0);
     check.range("policy_samples", evolution.policy_samples, 1..=10_000);
     let trees = evolution.initial_population.len();
     check.rule(

@@ -157,6 +157,14 @@ pub struct EvolutionModel {
     /// Where new hierarchies come from.
     #[serde(default)]
     pub variation: Variation,
+    /// Probability with which an offspring then loses a child of one of its composite
+    /// subtasks, and all below it; 0 in the thesis, which wishes for it (chapter 5).
+    #[serde(default)]
+    pub prune_probability: f64,
+    /// Probability with which an offspring then gets one more child in one of its composite
+    /// subtasks; 0 in the thesis, which wishes for it (chapter 5).
+    #[serde(default)]
+    pub grow_probability: f64,
     /// The hand-coded first generation, one hierarchy an individual, as text:
     /// `(Root Wander ApproachBattery ApproachNest)`.
     pub initial_population: Vec<String>,

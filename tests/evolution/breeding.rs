@@ -140,7 +140,7 @@ fn where_no_crossover_is_valid_parents_are_copied() {
     let mut copies = 0;
     for individual in &new.individuals {
         let from = match individual.origin {
-            Origin::Copied { from } => from,
+            Origin::Copied { from, .. } => from,
             _ => continue,
         };
         copies += 1;

@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use super::trees::{Nested, chance, is_composite, valid_tree, world};
 use super::{assert_frequencies, learned};
 
-fn nested(individual: &Individual, catalogue: &Catalogue) -> Nested {
+pub fn nested(individual: &Individual, catalogue: &Catalogue) -> Nested {
     Nested::of(individual.hierarchy.tree(), catalogue)
 }
 
@@ -34,7 +34,7 @@ fn valid_pairs(a: &Nested, b: &Nested) -> Vec<[usize; 2]> {
 }
 
 /// The learned values of an individual by subtask; composites occur once.
-fn values<'i>(
+pub fn values<'i>(
     individual: &'i Individual,
     catalogue: &Catalogue,
 ) -> BTreeMap<&'static str, &'i CompositeValues> {
@@ -46,7 +46,7 @@ fn values<'i>(
 }
 
 /// Names of the composites from the parent of a place up to the root.
-fn path(tree: &Nested, place: usize) -> BTreeSet<&'static str> {
+pub fn path(tree: &Nested, place: usize) -> BTreeSet<&'static str> {
     fn walk(node: &Nested, place: usize, at: &mut usize, above: &mut Vec<&'static str>) -> bool {
         if *at == place {
             return true;
@@ -74,6 +74,7 @@ fn site(origin: &Origin) -> (&Parent, &Parent, &[Inherited], &[String]) {
             donor,
             inherited,
             reset,
+            ..
         } => (receiver, donor, inherited, reset),
         other => panic!("{other:?} is no crossover"),
     }
@@ -185,7 +186,7 @@ proptest! {
     }
 }
 
-static WORLD: std::sync::LazyLock<maxq_lab::worlds::foraging::ForagingWorld> =
+pub static WORLD: std::sync::LazyLock<maxq_lab::worlds::foraging::ForagingWorld> =
     std::sync::LazyLock::new(world);
 
 #[test]

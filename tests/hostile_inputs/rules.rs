@@ -190,6 +190,14 @@ const RULES: &[(&str, &str)] = &[
     ("evolution.reproduced=4", "evolution.reproduced"),
     ("evolution.tournament_size=7", "evolution.tournament_size"),
     (
+        "evolution.prune_probability=1.1",
+        "evolution.prune_probability",
+    ),
+    (
+        "evolution.grow_probability=-0.1",
+        "evolution.grow_probability",
+    ),
+    (
         "evolution.trials_per_generation=0",
         "evolution.trials_per_generation",
     ),

@@ -288,7 +288,7 @@ fn origin(origin: &Origin) -> String {
         Origin::Crossover {
             receiver, donor, ..
         } => format!("{} x {}", receiver.id, donor.id),
-        Origin::Copied { from } => format!("copy of {from}"),
+        Origin::Copied { from, .. } => format!("copy of {from}"),
     }
 }
 

@@ -30,7 +30,7 @@ impl Ancestor {
     pub fn parents(&self) -> Vec<u64> {
         match &self.origin {
             Origin::HandCoded | Origin::Random | Origin::Reproduced => Vec::new(),
-            Origin::Copied { from } => vec![*from],
+            Origin::Copied { from, .. } => vec![*from],
             Origin::Crossover {
                 receiver, donor, ..
             } => vec![receiver.id, donor.id],

@@ -88,6 +88,7 @@ fn story(individual: &RankedRecord) -> Vec<(String, Paint)> {
             donor,
             inherited,
             reset,
+            ..
         } => {
             let made = format!(
                 "made of {} by putting {}'s {} in the place of {}",
@@ -103,6 +104,8 @@ fn story(individual: &RankedRecord) -> Vec<(String, Paint)> {
         }
         other => story.push((origin(other), Paint::Text)),
     }
+    let mutations = individual.origin.mutations().iter();
+    story.extend(mutations.map(|mutation| (format!("mutation: {mutation}"), Paint::Notice)));
     story
 }
 

@@ -47,12 +47,13 @@ pub(super) fn lines(desk: &Desk, lineage: &Lineage, columns: usize) -> Vec<Line<
 
 /// How an individual was made, in words.
 fn made(ancestor: &Ancestor) -> Vec<(String, Paint)> {
-    match &ancestor.origin {
+    let mut made = match &ancestor.origin {
         Origin::Crossover {
             receiver,
             donor,
             inherited,
             reset,
+            ..
         } => {
             let given: Vec<_> = inherited
                 .iter()
@@ -74,14 +75,17 @@ fn made(ancestor: &Ancestor) -> Vec<(String, Paint)> {
                 (format!("reset {}", reset.join(", ")), Paint::Dim),
             ]
         }
-        Origin::Copied { from } => vec![(format!("a copy of {from}"), Paint::Text)],
+        Origin::Copied { from, .. } => vec![(format!("a copy of {from}"), Paint::Text)],
         Origin::HandCoded => vec![(String::from("hand-coded"), Paint::Dim)],
         Origin::Random => vec![(String::from("drawn by chance"), Paint::Dim)],
         Origin::Reproduced => vec![(
             String::from("reproduced; older records are lost"),
             Paint::Bad,
         )],
-    }
+    };
+    let mutations = ancestor.origin.mutations().iter();
+    made.extend(mutations.map(|mutation| (format!("mutation: {mutation}"), Paint::Notice)));
+    made
 }
 
 /// All ancestors as a table.
