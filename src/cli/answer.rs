@@ -7,10 +7,11 @@ use serde::Serialize;
 
 use super::output::{self, Done, Failure, Format};
 use super::signals::Caught;
-use crate::evolution::Workers;
+use crate::evolution::{Experiment, Workers};
 use crate::lab::{WorldTask, with_world};
 use crate::learning::Gate;
 use crate::scenario::Scenario;
+use crate::worlds::scene::Scenic;
 
 /// What such commands are told alike.
 #[derive(Clone, Debug, clap::Args)]
@@ -35,29 +36,53 @@ impl Asked {
     }
 }
 
-/// Carries out the task that `task` makes with a gate, in the world of `scenario`, and
-/// prints its result as `format` says. A signal stops the gate: then nothing is printed.
-pub(super) fn answer<T, R>(
-    scenario: Scenario,
-    format: Format,
-    task: impl FnOnce(Arc<Gate>) -> T,
-    describe: impl FnOnce(&R) -> String,
-) -> Done
-where
-    T: WorldTask<Output = Result<R, Failure>>,
-    R: Serialize,
-{
+/// A question that a command computes the answer to, in any world.
+pub(super) trait Question {
+    /// What comes out.
+    type Answer: Serialize;
+
+    /// Computes the answer. When the gate is stopped, it is not wanted any more.
+    fn compute<W: Scenic + 'static>(
+        &self,
+        experiment: &Experiment<W>,
+        gate: &Gate,
+    ) -> Result<Self::Answer, Failure>;
+
+    /// The answer, for people.
+    fn describe(answer: &Self::Answer) -> String;
+}
+
+/// Computes the answer to a question in the world of `scenario` and prints it as `format`
+/// says. After a signal nothing is printed.
+pub(super) fn answer<Q: Question>(question: &Q, scenario: Scenario, format: Format) -> Done {
     let gate = Arc::new(Gate::default());
     let stopping = Arc::clone(&gate);
     let ended = Caught::now()?.then(move || stopping.stop())?;
-    let result = with_world(scenario, task(gate))?;
+    let asking = Asking {
+        question,
+        gate: &gate,
+    };
+    let answer = with_world(scenario, asking)?;
     if let Some(code) = ended.exit_code() {
         return Ok(ExitCode::from(code));
     }
-    let result = result?;
+    let answer = answer?;
     match format {
-        Format::Json => output::json(&result)?,
-        Format::Text => output::text(&describe(&result))?,
+        Format::Json => output::json(&answer)?,
+        Format::Text => output::text(&Q::describe(&answer))?,
     }
     Ok(ExitCode::SUCCESS)
+}
+
+struct Asking<'q, Q> {
+    question: &'q Q,
+    gate: &'q Gate,
+}
+
+impl<Q: Question> WorldTask for Asking<'_, Q> {
+    type Output = Result<Q::Answer, Failure>;
+
+    fn carry_out<W: Scenic + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+        self.question.compute(&experiment, self.gate)
+    }
 }

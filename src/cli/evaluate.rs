@@ -1,18 +1,17 @@
 //! `maxq-lab evaluate`: how good is a structure?
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::answer::{Asked, answer};
+use super::answer::{Asked, Question, answer};
 use super::output::{Done, Failure, counted};
 use super::progress::repeats;
 use super::source::Source;
 use crate::evolution::{Experiment, read_tree};
-use crate::lab::{Protocol, Scored, WorldTask, departures, evaluate, in_words};
+use crate::lab::{Protocol, Scored, departures, evaluate, in_words};
 use crate::learning::Gate;
-use crate::worlds::World;
+use crate::worlds::scene::Scenic;
 
 /// Tell how good a hierarchy's structure is.
 ///
@@ -51,8 +50,9 @@ pub(super) struct Args {
     asked: Asked,
 }
 
+/// How good a structure is, and how that was found.
 #[derive(Serialize)]
-struct Report {
+pub(super) struct Report {
     scenario: String,
     /// Settings in which it departs from the embedded one of its name.
     changed: Option<String>,
@@ -68,37 +68,36 @@ struct Report {
 /// Carries out the command.
 pub(super) fn main(args: Args) -> Done {
     let (scenario, format) = (args.source.load()?, args.asked.format);
-    answer(scenario, format, |gate| Task { args, gate }, describe)
+    answer(&args, scenario, format)
 }
 
-struct Task {
-    args: Args,
-    gate: Arc<Gate>,
-}
+impl Question for Args {
+    type Answer = Report;
 
-impl WorldTask for Task {
-    type Output = Result<Report, Failure>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+    fn compute<W: Scenic + 'static>(
+        &self,
+        experiment: &Experiment<W>,
+        gate: &Gate,
+    ) -> Result<Report, Failure> {
         let depth = experiment.scenario.evolution.maximum_depth;
-        let tree = read_tree(&self.args.tree, experiment.catalogue(), depth)
+        let tree = read_tree(&self.tree, experiment.catalogue(), depth)
             .map_err(|error| format!("--tree: {error}"))?;
         let count = |number: u64| usize::try_from(number).unwrap_or(usize::MAX);
         let protocol = Protocol {
-            warmup: count(self.args.warmup),
-            trials: count(self.args.trials),
-            repeats: count(self.args.repeats),
+            warmup: count(self.warmup),
+            trials: count(self.trials),
+            repeats: count(self.repeats),
             // A set that no repeat uses would be trained for nothing.
-            banks: count(self.args.banks.min(self.args.repeats)),
-            seed: self.args.asked.seed,
+            banks: count(self.banks.min(self.repeats)),
+            seed: self.asked.seed,
         };
-        let workers = self.args.asked.workers()?;
+        let workers = self.asked.workers()?;
         let started = Instant::now();
-        let bar = repeats(self.args.repeats);
+        let bar = repeats(self.repeats);
         let show = |done| bar.set_position(done as u64);
-        let scored = evaluate(&experiment, &tree, &protocol, &workers, &self.gate, show)?;
+        let scored = evaluate(experiment, &tree, &protocol, &workers, gate, show)?;
         bar.finish_and_clear();
-        let computed = self.gate.control_steps() as f64;
+        let computed = gate.control_steps() as f64;
         let scenario = &experiment.scenario;
         Ok(Report {
             scenario: scenario.name.clone(),
@@ -111,40 +110,40 @@ impl WorldTask for Task {
             scored,
         })
     }
-}
 
-fn describe(report: &Report) -> String {
-    let scored = &report.scored;
-    let evaluation = &scored.evaluation;
-    let error = |error: Option<f64>, digits: usize| match error {
-        Some(error) => format!(" +- {error:.digits$} (standard error)"),
-        None => String::new(),
-    };
-    let changed = report.changed.as_ref();
-    let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
-    let unknown = match evaluation.standard_error {
-        Some(_) => "",
-        None => "; a single repeat has no standard error",
-    };
-    format!(
-        "{}\n{}{changed}, seed {}: {} of {}, {} before them, {} of primitive subtasks{unknown}\n\
-         {:.1}{} time steps a trial\n\
-         {:.2}{} return of a trial, the sum of its rewards\n\
-         {:.2} % of the trials delivered\n\
-         {} control steps, {:.0} a second with the training of the primitive subtasks\n",
-        evaluation.tree,
-        report.scenario,
-        report.seed,
-        counted(evaluation.repeats.len() as u64, "repeat"),
-        counted(report.trials as u64, "scored trial"),
-        report.warmup,
-        counted(report.banks as u64, "set"),
-        evaluation.mean,
-        error(evaluation.standard_error, 1),
-        scored.mean_return,
-        error(scored.return_standard_error, 2),
-        100.0 * evaluation.delivered_share,
-        evaluation.control_steps,
-        report.control_steps_per_second,
-    )
+    fn describe(report: &Report) -> String {
+        let scored = &report.scored;
+        let evaluation = &scored.evaluation;
+        let error = |error: Option<f64>, digits: usize| match error {
+            Some(error) => format!(" +- {error:.digits$} (standard error)"),
+            None => String::new(),
+        };
+        let changed = report.changed.as_ref();
+        let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
+        let unknown = match evaluation.standard_error {
+            Some(_) => "",
+            None => "; a single repeat has no standard error",
+        };
+        format!(
+            "{}\n{}{changed}, seed {}: {} of {}, {} before them, {} of primitive subtasks{unknown}\n\
+             {:.1}{} time steps a trial\n\
+             {:.2}{} return of a trial, the sum of its rewards\n\
+             {:.2} % of the trials delivered\n\
+             {} control steps, {:.0} a second with the training of the primitive subtasks\n",
+            evaluation.tree,
+            report.scenario,
+            report.seed,
+            counted(evaluation.repeats.len() as u64, "repeat"),
+            counted(report.trials as u64, "scored trial"),
+            report.warmup,
+            counted(report.banks as u64, "set"),
+            evaluation.mean,
+            error(evaluation.standard_error, 1),
+            scored.mean_return,
+            error(scored.return_standard_error, 2),
+            100.0 * evaluation.delivered_share,
+            evaluation.control_steps,
+            report.control_steps_per_second,
+        )
+    }
 }

@@ -1,18 +1,17 @@
 //! `maxq-lab learn`: one learner in a finite world, held against the exact values.
 
 use std::fmt::Write;
-use std::sync::Arc;
 
 use clap::ValueEnum;
 use serde::Serialize;
 
-use super::answer::{Asked, answer};
+use super::answer::{Asked, Question, answer};
 use super::output::{Done, Failure, counted};
 use super::progress::repeats;
 use super::source::Source;
 use crate::evolution::{Experiment, read_tree};
 use crate::lab::{
-    Algorithm, Course, GivenPolicy, LearnError, LearnProtocol, Learned, Mean, ValueGrid, WorldTask,
+    Algorithm, Course, GivenPolicy, LearnError, LearnProtocol, Learned, Mean, ValueGrid,
     departures, in_words, learn, value_grids,
 };
 use crate::learning::Gate;
@@ -105,8 +104,9 @@ enum PolicyName {
     Random,
 }
 
+/// What was learned, and how.
 #[derive(Serialize)]
-struct Report {
+pub(super) struct Report {
     scenario: String,
     algorithm: String,
     /// Settings in which the scenario departs from the embedded one of its name.
@@ -138,58 +138,101 @@ pub(super) fn main(args: Args) -> Done {
         let found = args.tolerance;
         return Err(format!("--tolerance: found {found}; allowed: 0 to 1000").into());
     }
-    answer(scenario, format, |gate| Task { args, gate }, describe)
+    answer(&args, scenario, format)
 }
 
-struct Task {
-    args: Args,
-    gate: Arc<Gate>,
-}
+impl Question for Args {
+    type Answer = Report;
 
-impl WorldTask for Task {
-    type Output = Result<Report, Failure>;
-
-    fn carry_out<W: Scenic + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let args = &self.args;
+    fn compute<W: Scenic + 'static>(
+        &self,
+        experiment: &Experiment<W>,
+        gate: &Gate,
+    ) -> Result<Report, Failure> {
         let name = &experiment.scenario.name;
         let in_world = |error: LearnError| format!("{name}: {error}");
         if experiment.world.finite().is_none() {
             // Before a hierarchy is asked for that would not help.
             return Err(in_world(LearnError::NotFinite).into());
         }
-        let algorithm = algorithm(args, &experiment)?;
+        let algorithm = algorithm(self, experiment)?;
         let protocol = LearnProtocol {
-            steps: args.steps,
-            every: args.check_every,
-            tolerance: args.tolerance,
-            repeats: usize::try_from(args.repeats).unwrap_or(usize::MAX),
-            seed: args.asked.seed,
+            steps: self.steps,
+            every: self.check_every,
+            tolerance: self.tolerance,
+            repeats: usize::try_from(self.repeats).unwrap_or(usize::MAX),
+            seed: self.asked.seed,
         };
-        let shown = shown(args.show.as_deref(), &experiment.world.variants())?;
-        let workers = args.asked.workers()?;
-        let bar = repeats(args.repeats);
+        let shown = shown(self.show.as_deref(), &experiment.world.variants())?;
+        let workers = self.asked.workers()?;
+        let bar = repeats(self.repeats);
         let show = |done| bar.set_position(done as u64);
-        let learned = learn(
-            &experiment,
-            &algorithm,
-            &protocol,
-            &workers,
-            &self.gate,
-            show,
-        )
-        .map_err(in_world)?;
+        let learned =
+            learn(experiment, &algorithm, &protocol, &workers, gate, show).map_err(in_world)?;
         bar.finish_and_clear();
         Ok(Report {
             scenario: name.clone(),
-            algorithm: args.algorithm.word(),
+            algorithm: self.algorithm.word(),
             changed: in_words(&departures(&experiment.scenario)),
-            seed: args.asked.seed,
-            steps: args.steps,
-            tolerance: args.tolerance,
+            seed: self.asked.seed,
+            steps: self.steps,
+            tolerance: self.tolerance,
             values: value_grids(&experiment.world, &learned),
             learned,
             shown,
         })
+    }
+
+    fn describe(report: &Report) -> String {
+        let learned = &report.learned;
+        let trials: u64 = learned.repeats.iter().map(|course| course.trials).sum();
+        let changed = report.changed.as_ref();
+        let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
+        let mut text = format!(
+            "{}{changed}, {}, seed {}: {} of {}, {}\n\
+             expected return of the optimal policy   {:.4}\n",
+            report.scenario,
+            report.algorithm,
+            report.seed,
+            counted(learned.repeats.len() as u64, "repeat"),
+            counted(report.steps, "primitive step"),
+            counted(trials, "trial"),
+            learned.optimal_return
+        );
+        // Where the policy is given there is none that becomes optimal. Writing to a string
+        // cannot fail.
+        if let Some(at_the_end) = learned.final_greedy_return {
+            let _ = write!(
+                text,
+                "of the greedy policy at the end         {}\n\
+                 primitive steps until it is optimal     {}\n\
+                 until it is and stays so                {}\n",
+                interval(at_the_end, 4),
+                reached(learned, learned.steps_until_optimal, |course| course
+                    .steps_until_optimal),
+                reached(learned, learned.steps_until_always_optimal, |course| {
+                    course.steps_until_always_optimal
+                }),
+            );
+        }
+        let last = learned
+            .repeats
+            .first()
+            .and_then(|course| course.checks.last());
+        if let Some(check) = last {
+            let _ = writeln!(
+                text,
+                "largest error of a value, repeat 1      {:.4}",
+                check.largest_error
+            );
+        }
+        if let Some(grid) = report.values.get(report.shown) {
+            let _ = write!(text, "\nV {}, learned by repeat 1:\n", grid.case);
+            text.push_str(&table(&grid.learned));
+            let _ = write!(text, "\nexact:\n");
+            text.push_str(&table(&grid.exact));
+        }
+        text
     }
 }
 
@@ -216,58 +259,6 @@ fn shown(wanted: Option<&str>, variants: &[String]) -> Result<usize, Failure> {
     let place = variants.iter().position(|variant| variant == wanted);
     let allowed = || format!("--show: found {wanted:?}; allowed: {}", variants.join(", "));
     Ok(place.ok_or_else(allowed)?)
-}
-
-fn describe(report: &Report) -> String {
-    let learned = &report.learned;
-    let trials: u64 = learned.repeats.iter().map(|course| course.trials).sum();
-    let changed = report.changed.as_ref();
-    let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
-    let mut text = format!(
-        "{}{changed}, {}, seed {}: {} of {}, {}\n\
-         expected return of the optimal policy   {:.4}\n",
-        report.scenario,
-        report.algorithm,
-        report.seed,
-        counted(learned.repeats.len() as u64, "repeat"),
-        counted(report.steps, "primitive step"),
-        counted(trials, "trial"),
-        learned.optimal_return
-    );
-    // Where the policy is given there is none that becomes optimal. Writing to a string
-    // cannot fail.
-    if let Some(at_the_end) = learned.final_greedy_return {
-        let _ = write!(
-            text,
-            "of the greedy policy at the end         {}\n\
-             primitive steps until it is optimal     {}\n\
-             until it is and stays so                {}\n",
-            interval(at_the_end, 4),
-            reached(learned, learned.steps_until_optimal, |course| course
-                .steps_until_optimal),
-            reached(learned, learned.steps_until_always_optimal, |course| {
-                course.steps_until_always_optimal
-            }),
-        );
-    }
-    let last = learned
-        .repeats
-        .first()
-        .and_then(|course| course.checks.last());
-    if let Some(check) = last {
-        let _ = writeln!(
-            text,
-            "largest error of a value, repeat 1      {:.4}",
-            check.largest_error
-        );
-    }
-    if let Some(grid) = report.values.get(report.shown) {
-        let _ = write!(text, "\nV {}, learned by repeat 1:\n", grid.case);
-        text.push_str(&table(&grid.learned));
-        let _ = write!(text, "\nexact:\n");
-        text.push_str(&table(&grid.exact));
-    }
-    text
 }
 
 fn interval(mean: Mean, digits: usize) -> String {

@@ -2,17 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::answer::{Asked, answer};
+use super::answer::{Asked, Question, answer};
 use super::output::{Done, Failure};
 use super::source::Source;
 use crate::evolution::Experiment;
-use crate::lab::WorldTask;
 use crate::learning::Gate;
-use crate::worlds::{Kind, World};
+use crate::worlds::Kind;
+use crate::worlds::scene::Scenic;
 
 /// Train the primitive subtasks and show what they have learned.
 ///
@@ -32,8 +31,9 @@ pub(super) struct Args {
     asked: Asked,
 }
 
+/// What the primitive subtasks have learned.
 #[derive(Serialize)]
-struct Report {
+pub(super) struct Report {
     scenario: String,
     seed: u64,
     primitives: Vec<Primitive>,
@@ -60,18 +60,17 @@ struct Row {
 /// Carries out the command.
 pub(super) fn main(args: Args) -> Done {
     let (scenario, format) = (args.source.load()?, args.asked.format);
-    answer(scenario, format, |gate| Task { args, gate }, describe)
+    answer(&args, scenario, format)
 }
 
-struct Task {
-    args: Args,
-    gate: Arc<Gate>,
-}
+impl Question for Args {
+    type Answer = Report;
 
-impl WorldTask for Task {
-    type Output = Result<Report, Failure>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+    fn compute<W: Scenic + 'static>(
+        &self,
+        experiment: &Experiment<W>,
+        gate: &Gate,
+    ) -> Result<Report, Failure> {
         let mut primitives = experiment.catalogue().primitives();
         if primitives.all(|primitive| experiment.world.training(primitive).is_none()) {
             let name = &experiment.scenario.name;
@@ -82,8 +81,8 @@ impl WorldTask for Task {
             )
             .into());
         }
-        let workers = self.args.asked.workers()?;
-        let skills = experiment.train(self.args.asked.seed, 0, &workers, &self.gate)?;
+        let workers = self.asked.workers()?;
+        let skills = experiment.train(self.asked.seed, 0, &workers, gate)?;
         let catalogue = experiment.catalogue();
         let primitives = skills.all().iter().map(|skill| {
             let rows = experiment
@@ -111,9 +110,45 @@ impl WorldTask for Task {
         });
         Ok(Report {
             scenario: experiment.scenario.name.clone(),
-            seed: self.args.asked.seed,
+            seed: self.asked.seed,
             primitives: primitives.collect(),
         })
+    }
+
+    fn describe(report: &Report) -> String {
+        let mut text = format!("{}, seed {}\n", report.scenario, report.seed);
+        for primitive in &report.primitives {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "\n{}", primitive.subtask);
+            let width = primitive
+                .rows
+                .iter()
+                .map(|row| row.label.len())
+                .max()
+                .unwrap_or(0);
+            let columns = primitive.actions.iter().enumerate();
+            let columns =
+                columns.map(|(i, action)| format!("{:>14}", format!("{} {action}", i + 1)));
+            let _ = writeln!(
+                text,
+                "  {:width$}  greedy{}",
+                "",
+                columns.collect::<String>()
+            );
+            for row in &primitive.rows {
+                let values = row
+                    .q
+                    .iter()
+                    .map(|q| format!("{q:>14.3}"))
+                    .collect::<String>();
+                let _ = writeln!(
+                    text,
+                    "  {:width$}  {:>6}{values}",
+                    row.label, row.greedy_action
+                );
+            }
+        }
+        text
     }
 }
 
@@ -125,39 +160,4 @@ fn greedy(values: &[f32]) -> usize {
         }
     }
     best
-}
-
-fn describe(report: &Report) -> String {
-    let mut text = format!("{}, seed {}\n", report.scenario, report.seed);
-    for primitive in &report.primitives {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "\n{}", primitive.subtask);
-        let width = primitive
-            .rows
-            .iter()
-            .map(|row| row.label.len())
-            .max()
-            .unwrap_or(0);
-        let columns = primitive.actions.iter().enumerate();
-        let columns = columns.map(|(i, action)| format!("{:>14}", format!("{} {action}", i + 1)));
-        let _ = writeln!(
-            text,
-            "  {:width$}  greedy{}",
-            "",
-            columns.collect::<String>()
-        );
-        for row in &primitive.rows {
-            let values = row
-                .q
-                .iter()
-                .map(|q| format!("{q:>14.3}"))
-                .collect::<String>();
-            let _ = writeln!(
-                text,
-                "  {:width$}  {:>6}{values}",
-                row.label, row.greedy_action
-            );
-        }
-    }
-    text
 }

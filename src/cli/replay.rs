@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use super::beginning::Beginning;
 use super::output::{self, Done};
 use super::show::{Show, exit_code};
-use super::signals::Caught;
 use crate::dashboard::session::Source;
 use crate::lab::specimen::bench;
 use crate::lab::{Life, Recording};
@@ -33,9 +32,7 @@ pub(super) struct Args {
 
 /// Carries out the command.
 pub(super) fn main(args: &Args) -> Done {
-    Show::require()?;
-    let signals = Caught::now()?;
-    let outfit = args.show.outfit()?;
+    let (outfit, signals) = args.show.require_for_run(&args.run_dir)?;
     let recording = Recording::read(&args.run_dir)?;
     let manifest = &recording.manifest;
     let what = bench(manifest.scenario.clone(), manifest.seed)?;

@@ -48,15 +48,24 @@ impl Show {
         is_terminal() && !dumb
     }
 
-    /// Fails where there is no terminal.
-    pub(super) fn require() -> Result<(), Failure> {
-        match Self::is_possible() {
-            true => Ok(()),
-            false => Err(Failure::Message(String::from(
+    /// What a command needs that is nothing without a dashboard: keys and looks, and the
+    /// signals from now on. Where there is no terminal it fails, and names a command that
+    /// does `instead`.
+    pub(super) fn require(&self, instead: &str) -> Result<(Outfit, Caught), Failure> {
+        if !Self::is_possible() {
+            let message = format!(
                 "standard input or output is no terminal that a dashboard could be shown on; \
-                 'maxq-lab frame RUN_DIR' prints a frame anywhere",
-            ))),
+                 allowed here: {instead}"
+            );
+            return Err(message.into());
         }
+        let signals = Caught::now()?;
+        Ok((self.outfit()?, signals))
+    }
+
+    /// As above, for a dashboard over the run in a folder.
+    pub(super) fn require_for_run(&self, folder: &Path) -> Result<(Outfit, Caught), Failure> {
+        self.require(&format!("maxq-lab frame {}", folder.display()))
     }
 
     /// The person's keys and looks. What is wrong with them is told before anything is

@@ -36,9 +36,7 @@ pub(super) struct Args {
 
 /// Carries out the command.
 pub(super) fn main(args: &Args) -> Done {
-    Show::require()?;
-    let signals = Caught::now()?;
-    let outfit = args.show.outfit()?;
+    let (outfit, signals) = args.show.require_for_run(&args.run_dir)?;
     let watch = Watch::start(&args.run_dir, INTERVAL)?;
     let manifest = match wait_for_run(&args.run_dir, &watch, &signals)? {
         Found::Run(manifest) => *manifest,

@@ -3,7 +3,7 @@
 use portable_pty::CommandBuilder;
 
 use crate::pty::{Pty, in_environment};
-use crate::{ENDLESS, Place};
+use crate::{ENDLESS, Place, leave};
 
 /// A shell with job control and a prompt that nothing else looks like.
 fn shell() -> Pty {
@@ -102,9 +102,7 @@ fn stopped_by_force_and_continued_it_draws_everything_again() {
     let before = pty.bytes();
     pty.signal("CONT");
     pty.wait("a whole frame", |pty| pty.bytes() > before + 1000);
-    pty.press("qy");
-    pty.ended();
-    pty.wait_given_back();
+    leave(&mut pty);
 }
 
 #[test]
@@ -116,7 +114,5 @@ fn without_a_shell_there_is_nobody_to_continue_the_program_so_it_does_not_stop()
     place.wait_for_evolution();
     pty.signal("TSTP");
     place.wait_for_evolution();
-    pty.press("qy");
-    pty.ended();
-    pty.wait_given_back();
+    leave(&mut pty);
 }

@@ -1,7 +1,7 @@
 //! Start, pause, look, step, resize, leave.
 
 use crate::pty::{Pty, program};
-use crate::{BY_HAND, ENDLESS, Place, exists, leave, wait_for_end};
+use crate::{BY_HAND, ENDLESS, Place, exists, leave, wait_for_end, wait_for_good_end};
 
 #[test]
 fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
@@ -36,8 +36,7 @@ fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
         Place::generation(pty) > Some(before + 1)
     });
     pty.press("\u{3}y");
-    wait_for_end(&mut pty, BY_HAND);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, BY_HAND);
     place.assert_saved();
 }
 
@@ -68,8 +67,7 @@ fn a_run_that_is_over_stays_on_the_screen_and_its_result_is_printed() {
     let mut pty = Pty::start(120, 40, program(&arguments));
     pty.wait_for("FINISHED");
     pty.press("q");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 0);
     pty.wait_for("best individual");
     assert!(exists(&place.folder, "summary.json"));
 }
@@ -97,8 +95,7 @@ fn a_run_is_handed_over_to_a_process_without_a_terminal() {
     pty.press("q");
     pty.wait_for("let the run go on without a terminal");
     pty.press("d");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 0);
     pty.wait_for("goes on with the run");
     let screen = pty.screen();
     let before = screen.split(" goes on with the run").next().unwrap();

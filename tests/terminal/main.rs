@@ -108,20 +108,25 @@ impl Place {
     }
 }
 
-/// What a program said last.
 /// The exit code of work that a person has stopped before it was done, as by Ctrl-C.
 const BY_HAND: u32 = 130;
 
+/// Waits for the end of a program whose terminal may have gone.
 fn wait_for_end(pty: &mut Pty, code: u32) {
     let status = pty.ended();
     assert_eq!(status.exit_code(), code, "{}", pty.screen());
 }
 
+/// Waits for the end of a program that gives the terminal back.
+fn wait_for_good_end(pty: &mut Pty, code: u32) {
+    wait_for_end(pty, code);
+    pty.wait_given_back();
+}
+
 /// Answers that the run is to be saved and left.
 fn leave(pty: &mut Pty) {
     pty.press("qy");
-    wait_for_end(pty, BY_HAND);
-    pty.wait_given_back();
+    wait_for_good_end(pty, BY_HAND);
 }
 
 fn exists(folder: &Path, name: &str) -> bool {

@@ -6,7 +6,7 @@ use maxq_lab::scenario::EMBEDDED;
 
 use crate::common::program as plain_program;
 use crate::pty::{Pty, program};
-use crate::{ENDLESS, Place, leave, wait_for_end, wait_until};
+use crate::{ENDLESS, Place, leave, wait_for_end, wait_for_good_end, wait_until};
 
 fn headless(place: &Place) -> Child {
     let mut command = plain_program();
@@ -35,8 +35,7 @@ fn a_run_is_watched_from_before_it_begins_until_it_dies() {
     let mut resumed = resumed.spawn().unwrap();
     pty.wait_for("RUNNING");
     pty.press("q");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 0);
     // Watching has not touched it.
     place.wait_for_evolution();
     resumed.kill().unwrap();
@@ -49,8 +48,7 @@ fn waiting_for_a_run_can_be_given_up() {
     let mut pty = place.on("watch");
     pty.wait_for("waiting for a run");
     pty.press("\u{3}");
-    wait_for_end(&mut pty, 130);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 130);
 }
 
 #[test]
@@ -71,8 +69,7 @@ fn a_dead_run_is_replayed() {
         Place::generation(pty) == Some(last - 1)
     });
     pty.press("q");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 0);
 }
 
 #[test]

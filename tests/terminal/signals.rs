@@ -5,7 +5,7 @@ use portable_pty::CommandBuilder;
 
 use crate::common::wait_until;
 use crate::pty::{Pty, in_environment, program};
-use crate::{ENDLESS, Place, exists, leave, wait_for_end};
+use crate::{ENDLESS, Place, exists, leave, wait_for_end, wait_for_good_end};
 
 #[test]
 fn a_signal_saves_the_run_and_gives_the_terminal_back() {
@@ -14,8 +14,7 @@ fn a_signal_saves_the_run_and_gives_the_terminal_back() {
         let mut pty = place.start(&[]);
         place.wait_for_evolution();
         pty.signal(signal);
-        wait_for_end(&mut pty, code);
-        pty.wait_given_back();
+        wait_for_good_end(&mut pty, code);
         place.assert_saved();
     }
 }
@@ -27,8 +26,7 @@ fn a_paused_run_hears_signals_too() {
     pty.press("p");
     pty.wait_for("PAUSED");
     pty.signal("TERM");
-    wait_for_end(&mut pty, 143);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 143);
     place.assert_saved();
 }
 
@@ -151,8 +149,7 @@ fn a_signal_that_says_that_the_line_dropped_ends_the_run_if_that_is_wanted() {
     let mut pty = place.start(&["--on-hangup", "stop"]);
     place.wait_for_evolution();
     pty.signal("HUP");
-    wait_for_end(&mut pty, 129);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 129);
     place.assert_saved();
 }
 

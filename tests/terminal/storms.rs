@@ -4,7 +4,7 @@ use maxq_lab::random::{Purpose, stream};
 use rand::RngExt;
 
 use crate::common::wait_until;
-use crate::{BY_HAND, Place, wait_for_end};
+use crate::{BY_HAND, Place, wait_for_end, wait_for_good_end};
 
 #[test]
 fn rubbish_and_storms_of_sizes_do_no_harm() {
@@ -28,8 +28,7 @@ fn rubbish_and_storms_of_sizes_do_no_harm() {
     pty.press("q");
     pty.wait_for("Save the run and leave?");
     pty.press("y");
-    wait_for_end(&mut pty, BY_HAND);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, BY_HAND);
     place.assert_saved();
 }
 

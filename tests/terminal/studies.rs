@@ -8,7 +8,7 @@ use maxq_lab::report::{Arm, Base, Plan, Study};
 
 use crate::common::{SHORT, program as plain_program};
 use crate::pty::{Pty, program};
-use crate::{BY_HAND, ENDLESS, wait_for_end, wait_until};
+use crate::{BY_HAND, ENDLESS, wait_for_end, wait_for_good_end, wait_until};
 
 /// The folder of a study of an arm with settings.
 fn create(settings: &[&str], seeds: &str, folder: &str) -> Study {
@@ -50,8 +50,7 @@ fn a_run_that_is_done_is_replayed_and_come_back_from() {
     pty.resize(80, 24);
     pty.wait_for("1 done");
     pty.press("q");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 0);
 }
 
 #[test]
@@ -70,8 +69,7 @@ fn a_run_that_goes_on_is_watched_until_it_is_broken_off() {
     pty.press("q");
     pty.wait_for("1 broken off");
     pty.press("\u{3}");
-    wait_for_end(&mut pty, 0);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 0);
 }
 
 #[test]
@@ -80,8 +78,7 @@ fn a_folder_without_a_study_is_refused_before_the_screen_is_taken() {
     let folder = parent.path().to_str().unwrap();
     let mut pty = Pty::start(80, 24, program(&["study", "watch", folder]));
     pty.wait_for("holds no study.json");
-    wait_for_end(&mut pty, 1);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 1);
 }
 
 /// What a program does on the runs of a study is shown, asked about, and the same bytes
@@ -101,8 +98,7 @@ fn a_study_is_left_and_gone_on_with() {
     let second = Path::new(&shown).join(study.name(&study.runs()[1]));
     wait_until("the second run", || second.join("run.json").exists());
     pty.signal("TERM");
-    wait_for_end(&mut pty, 143);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 143);
     pty.wait_for("the same command goes on");
 
     let mut pty = start((120, 40));
@@ -143,8 +139,7 @@ fn who_leaves_a_study_is_asked_what_becomes_of_it() {
     pty.press("q");
     pty.wait_for("Stop them?");
     pty.press("y");
-    wait_for_end(&mut pty, BY_HAND);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, BY_HAND);
     pty.wait_for("0 of 1 runs done");
 
     let mut pty = start();
@@ -182,7 +177,6 @@ fn a_run_that_cannot_be_done_says_why_in_the_table_and_at_the_end() {
     pty.press("\r");
     pty.wait_for("error: smoke/evolved/seed-1: ");
     pty.press("q");
-    wait_for_end(&mut pty, 1);
-    pty.wait_given_back();
+    wait_for_good_end(&mut pty, 1);
     pty.wait_for("0 of 1 runs done");
 }

@@ -6,7 +6,6 @@ use super::progress::Own;
 use super::table;
 use crate::cli::output::Done;
 use crate::cli::show::{Show, exit_code};
-use crate::cli::signals::Caught;
 use crate::report::Study;
 
 /// Follow the runs of a study, and open any of them.
@@ -30,9 +29,8 @@ pub(super) struct WatchArgs {
 
 /// Carries out `study watch`.
 pub(super) fn main(args: &WatchArgs) -> Done {
-    Show::require()?;
     let study = Study::open(&args.dir)?;
-    let signals = Caught::now()?;
-    let outfit = args.show.outfit()?;
+    let instead = format!("maxq-lab study status {}", args.dir.display());
+    let (outfit, signals) = args.show.require(&instead)?;
     exit_code(table::show(&study, outfit, &signals, Own::default)?)
 }
