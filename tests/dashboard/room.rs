@@ -139,6 +139,31 @@ fn ranks_by_chance_are_called_so() {
     }
 }
 
+/// Both sides of a comparison are seen to their ends, in little room by pages.
+#[test]
+fn a_comparison_is_seen_to_its_end() {
+    let mut screen = learned().screen("dark", Unicode, SMALL);
+    screen.press("c");
+    assert!(!screen.text().contains("selects"), "{}", screen.text());
+    screen.press("page-down page-down");
+    let text = screen.text();
+    assert!(text.contains("selects") && !text.contains("▼"), "{text}");
+    screen.press("page-up page-up");
+    assert!(screen.text().contains("selected: rank 1"));
+}
+
+/// What a chart of the inspector shows.
+#[test]
+fn charts_of_the_inspector_say_what_they_show() {
+    let mut screen = learned().screen("dark", Unicode, SMALL);
+    screen.press("i");
+    let text = screen.text();
+    assert_eq!(text.matches("to 4.5").count(), 2, "across and down: {text}");
+    assert!(!text.contains('…'), "{text}");
+    screen.press("tab");
+    assert!(!screen.text().contains('…'), "{}", screen.text());
+}
+
 /// What does not fit ends with a sign that says so.
 #[test]
 fn what_is_cut_says_so() {

@@ -8,7 +8,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::View;
-use super::lines::{Pen, draw_lines, percent};
+use super::lines::{Pen, draw_lines, last_start, percent};
 use crate::dashboard::desk::{Chosen, Desk};
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
@@ -35,6 +35,8 @@ use crate::worlds::SubtaskId;
 pub(super) struct Compare {
     /// Selection probabilities of the two.
     selection: Option<Selections>,
+    /// Lines above the screen.
+    scroll: usize,
 }
 
 struct Selections {
@@ -106,6 +108,37 @@ fn unlike(tree: &Tree, other: &Tree) -> Vec<bool> {
             }
         })
         .collect()
+}
+
+impl Compare {
+    fn scroll(&mut self, desk: &Desk, action: Action) -> Option<Vec<Effect>> {
+        let page = usize::from(desk.size.1 / 2);
+        self.scroll = match action {
+            Action::PageUp => self.scroll.saturating_sub(page),
+            Action::PageDown => self.scroll + page,
+            Action::Top => 0,
+            Action::Bottom => usize::MAX,
+            _ => return None,
+        };
+        let longest = self.longest(desk);
+        self.scroll = self.scroll.min(last_start(longest, rows(desk)));
+        Some(Vec::new())
+    }
+
+    /// Lines of the longer side.
+    fn longest(&self, desk: &Desk) -> usize {
+        let columns = usize::from((desk.size.0 / 2).saturating_sub(3));
+        self.sides(desk).map_or(0, |[one, other]| {
+            let lines = [(&one, &other), (&other, &one)]
+                .map(|(side, against)| side.lines(desk, "", against, columns).len());
+            lines.into_iter().max().unwrap_or(0)
+        })
+    }
+}
+
+/// Rows of a side: without header, hint bar, border and note.
+fn rows(desk: &Desk) -> u16 {
+    desk.size.1.saturating_sub(5)
 }
 
 impl Side<'_> {
@@ -223,7 +256,7 @@ impl View for Compare {
                 height: area.height.saturating_sub(1),
                 ..area
             };
-            draw_lines(look, &lines, 0, side, buffer);
+            draw_lines(look, &lines, self.scroll, side, buffer);
         }
         let key = desk
             .keys
@@ -240,6 +273,7 @@ impl View for Compare {
     fn hints(&self) -> &'static [Action] {
         &[
             Action::Down,
+            Action::PageDown,
             Action::Mark,
             Action::Best,
             Action::ViewInspector,
@@ -247,15 +281,19 @@ impl View for Compare {
     }
 
     fn can(&self, desk: &Desk, action: Action) -> bool {
-        action != Action::Down || desk.rivals().is_some()
+        match action {
+            Action::Down => desk.rivals().is_some(),
+            Action::PageDown => self.longest(desk) > usize::from(rows(desk)),
+            _ => true,
+        }
     }
 
-    /// The selected individual changes by rank.
+    /// The selected individual changes by rank; pages are those of both sides.
     fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
         let by = match action {
             Action::Up => -1,
             Action::Down => 1,
-            _ => return None,
+            scrolls => return self.scroll(desk, scrolls),
         };
         let record = desk.shown()?;
         let here = desk.selected()?.rank.saturating_sub(1);

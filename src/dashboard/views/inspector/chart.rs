@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::values::largest;
 use crate::dashboard::desk::Desk;
-use crate::dashboard::look::{Canvas, Layer, Paint, fitted, put, shortened, width};
+use crate::dashboard::look::{Canvas, Layer, Paint, put, shortened, width, wrapped};
 use crate::dashboard::views::lines::{TINY, number};
 use crate::lab::specimen::{Profile, Quantity};
 use crate::worlds::scene::Scale;
@@ -154,8 +154,9 @@ pub(super) fn sheets(
     area: Rect,
     buffer: &mut Buffer,
 ) {
+    let legend = sheet_legend(profile, down, area.width.into());
     let room = Rect {
-        height: area.height.saturating_sub(2),
+        height: area.height.saturating_sub(legend.len() as u16),
         ..area
     };
     let compares = matches!(
@@ -184,24 +185,31 @@ pub(super) fn sheets(
             buffer,
         );
     }
+    for (row, text) in (0..).zip(&legend) {
+        let dim = desk.look.style(Paint::Dim);
+        put(
+            buffer,
+            area,
+            (0, room.height.saturating_add(row)),
+            text,
+            dim,
+        );
+    }
+}
+
+/// What the digits of sheets mean, and what is across and down.
+fn sheet_legend(profile: &Profile, down: &Scale, columns: usize) -> Vec<String> {
     let [low, high] = range(profile);
     let ends = |scale: &Scale| {
         let last = scale.len().saturating_sub(1);
         let name = scale.name().replace('_', " ");
         format!("{name} {} to {}", scale.label(0), scale.label(last))
     };
-    let first = format!("0: {}  9: {}", number(low), number(high));
-    let second = format!("across {}, down {}", ends(&profile.across), ends(down));
-    for (row, text) in [(0, first), (1, second)] {
-        let text = fitted(&text, usize::from(area.width), desk.look.signs);
-        put(
-            buffer,
-            area,
-            (0, room.height + row),
-            &text,
-            desk.look.style(Paint::Dim),
-        );
-    }
+    let digits = format!("0: {}  9: {}", number(low), number(high));
+    let across = format!("across {}, down {}", ends(&profile.across), ends(down));
+    let mut lines = vec![digits];
+    lines.extend(wrapped(&across, columns, ""));
+    lines
 }
 
 /// Columns between sheets.

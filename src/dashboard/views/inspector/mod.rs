@@ -25,6 +25,9 @@ use values::Shelf;
 /// Size from which on all pages are shown at once.
 const ROOMY: (u16, u16) = (110, 32);
 
+/// Columns that a page needs beside the tree.
+const PAGE: u16 = 34;
+
 /// The selected individual: its tree, the learned values of the subtask under the cursor,
 /// its selection probabilities, and where it comes from.
 ///
@@ -157,7 +160,8 @@ impl Inspector {
             return (above, 0);
         }
         let widest = lines.iter().map(Line::width).max().unwrap_or(0);
-        let [left, _] = columns(area, count(widest).min(area.width / 2));
+        let most = area.width.saturating_sub(PAGE).max(area.width / 2);
+        let [left, _] = columns(area, count(widest).min(most));
         let skipped = desk.node.saturating_sub(usize::from(left.height / 2));
         (left, skipped.min(last_start(lines.len(), left.height)))
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use ratatui::text::Line;
 
 use crate::dashboard::desk::Desk;
-use crate::dashboard::look::Paint;
+use crate::dashboard::look::{Paint, shortened, wrapped};
 use crate::dashboard::views::lines::{Pen, percent};
 use crate::learning::SelectionProbabilities;
 
@@ -25,13 +25,15 @@ pub(super) fn lines(
 ) -> Vec<Line<'static>> {
     let look = &desk.look;
     let catalogue = desk.catalogue();
-    let bar = columns.saturating_sub(2 + 16 + 6 + 2 + 12).min(20);
+    let names = columns.saturating_sub(2 + 6 + 12).clamp(8, 16);
+    let bar = columns.saturating_sub(2 + names + 6 + 2 + 12).min(20);
     let mut lines = Vec::new();
     for (index, shares) in selection.iter().enumerate() {
         let about = catalogue.state_types.get(index);
         let about = about.map_or("", |info| info.description);
         let title = format!("{} {about}", index + 1);
-        lines.push(Pen::new(look).text(title, Paint::Title).line());
+        let title = wrapped(&title, columns, "  ").into_iter();
+        lines.extend(title.map(|line| Pen::new(look).text(line, Paint::Title).line()));
         let Some(shares) = shares else {
             let text = "  no such state in this arena";
             lines.push(Pen::new(look).text(text, Paint::Dim).line());
@@ -45,10 +47,15 @@ pub(super) fn lines(
             }
             let pen = Pen::new(look)
                 .to(2)
-                .cell(name, 16, Paint::Text)
-                .right(&percent(share), 6, Paint::Title)
-                .text("  ", Paint::Text)
-                .bar(share, bar, Paint::series(place));
+                .text(shortened(name, names, look.signs), Paint::Text)
+                .to(2 + names)
+                .right(&percent(share), 6, Paint::Title);
+            let pen = match bar {
+                0 => pen,
+                bar => pen
+                    .text("  ", Paint::Text)
+                    .bar(share, bar, Paint::series(place)),
+            };
             let mean = mean.map_or(String::new(), |mean| format!("  mean {}", percent(mean)));
             lines.push(pen.text(mean, Paint::Dim).line());
         }

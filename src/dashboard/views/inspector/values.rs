@@ -9,7 +9,7 @@ use ratatui::text::Line;
 use super::chart;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, put, shortened};
+use crate::dashboard::look::{Paint, put, shortened, wrapped};
 use crate::dashboard::views::lines::{Pen, decimals, draw_lines, fixed};
 use crate::lab::specimen::{Profile, Quantity};
 use crate::worlds::scene::Scale;
@@ -76,12 +76,14 @@ impl Shelf {
             put(buffer, area, (0, 0), text, look.style(Paint::Dim));
             return;
         };
-        let title = self.title(desk, profile);
-        let title = fitted(&title, usize::from(area.width), look.signs);
-        put(buffer, area, (0, 0), &title, look.style(Paint::Dim));
+        let title = wrapped(&self.title(desk, profile), usize::from(area.width), "");
+        for (row, line) in (0..area.height).zip(&title) {
+            put(buffer, area, (0, row), line, look.style(Paint::Dim));
+        }
+        let head = (title.len() as u16).min(area.height);
         let inside = Rect {
-            y: area.y + area.height.min(1),
-            height: area.height.saturating_sub(1),
+            y: area.y + head,
+            height: area.height - head,
             ..area
         };
         match (&profile.down, &profile.across) {
