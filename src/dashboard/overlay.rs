@@ -9,7 +9,7 @@ use super::input::Effect;
 use super::keys::{Action, KeyMap, Scope};
 use super::look::{Look, Paint, fitted, put, width, wrapped};
 use super::panel::panel;
-use super::views::ViewId;
+use super::views::{ViewId, mark_more};
 
 /// What is open over the view.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -201,8 +201,9 @@ pub(super) fn window(
     let inside = panel(look, place, true, titles, buffer);
     let last = lines.len().saturating_sub(usize::from(inside.height));
     let skipped = usize::from(scroll).min(last);
+    let below = last - skipped;
     for (row, (key, text, paint)) in lines.iter().skip(skipped).enumerate() {
-        let Ok(row) = u16::try_from(row) else { return };
+        let Ok(row) = u16::try_from(row) else { break };
         put(buffer, inside, (1, row), key, look.style(Paint::Key));
         let from = match key.is_empty() {
             true => 1,
@@ -212,4 +213,5 @@ pub(super) fn window(
         let text = fitted(text, room, look.signs);
         put(buffer, inside, (from, row), &text, look.style(*paint));
     }
+    mark_more(look, [skipped, below], inside, buffer);
 }

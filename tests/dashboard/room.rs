@@ -164,6 +164,16 @@ fn charts_of_the_inspector_say_what_they_show() {
     assert!(!screen.text().contains('…'), "{}", screen.text());
 }
 
+/// Help that is longer than the screen says that it goes on.
+#[test]
+fn long_help_says_that_there_is_more() {
+    let mut screen = foraging().screen("dark", Unicode, SMALL);
+    screen.press("?");
+    assert!(screen.text().contains("▼ ") && !screen.text().contains("▲ "));
+    screen.press("page-down");
+    assert!(screen.text().contains("▲ 12 more"), "{}", screen.text());
+}
+
 /// What does not fit ends with a sign that says so.
 #[test]
 fn what_is_cut_says_so() {

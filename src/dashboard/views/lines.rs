@@ -105,7 +105,12 @@ fn written(line: &Line<'_>) -> usize {
 }
 
 /// Says how many lines there are above an area, and below.
-pub(super) fn mark_more(look: &Look, [above, below]: [usize; 2], area: Rect, buffer: &mut Buffer) {
+pub(in crate::dashboard) fn mark_more(
+    look: &Look,
+    [above, below]: [usize; 2],
+    area: Rect,
+    buffer: &mut Buffer,
+) {
     let area = area.intersection(buffer.area);
     for (more, row, sign) in [
         (above, 0, look.signs.order[0]),

@@ -22,6 +22,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use thiserror::Error;
 
+pub(super) use lines::mark_more;
 pub(super) use overview::panels;
 
 use super::desk::{Activity, Desk};

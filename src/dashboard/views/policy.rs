@@ -135,9 +135,10 @@ fn draw_type(
     }
     if area.height >= WITH_CURVES {
         let below = Rect {
+            x: area.x + 1.min(area.width),
             y: area.y + 2,
+            width: area.width.saturating_sub(1),
             height: area.height - 2,
-            ..area
         };
         chart(desk, index).draw(look, below, buffer);
     }
