@@ -12,7 +12,6 @@
 
 mod common;
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::net::TcpListener;
@@ -66,31 +65,12 @@ fn succeeds(command: &mut Command) -> String {
 
 /// Everything in a study but what says where and when: `run.json`, `summary.json`, and
 /// locks.
-fn bytes(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut files = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            let name = path.file_name().unwrap().to_str().unwrap();
-            if path.is_dir() {
-                folders.push(path);
-            } else if !["run.json", "summary.json", "lock"].contains(&name) {
-                let place = path.strip_prefix(folder).unwrap().to_str().unwrap();
-                files.insert(place.to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    files
+fn follows_from_the_plan(name: &str) -> bool {
+    !["run.json", "summary.json", "lock"].contains(&name)
 }
 
 fn assert_same(one: &Path, other: &Path) {
-    let (one, other) = (bytes(one), bytes(other));
-    let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
-    assert_eq!(names(&one), names(&other));
-    for (name, bytes) in &one {
-        common::assert_same_bytes(bytes, &other[name], name);
-    }
+    common::assert_same_files(one, other, follows_from_the_plan);
 }
 
 /// Says something although the test passes, when `eprintln` would be kept back.

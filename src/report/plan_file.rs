@@ -83,8 +83,7 @@ impl PlanFile {
     /// files are sought in `folder`.
     pub(super) fn write_out(self, file: &str, folder: &Path) -> Result<Plan, PlanError> {
         let scenarios = self.scenarios.iter().enumerate().map(|(index, value)| {
-            let place = format!("{file}: scenarios[{index}]");
-            scenario(value, &place, folder).map_err(|source| PlanError::Scenario {
+            scenario(value, folder).map_err(|source| PlanError::Scenario {
                 file: file.to_owned(),
                 index,
                 source: Box::new(source),
@@ -111,7 +110,7 @@ impl PlanFile {
     }
 }
 
-fn scenario(value: &Value, place: &str, folder: &Path) -> Result<Scenario, ScenarioError> {
+fn scenario(value: &Value, folder: &Path) -> Result<Scenario, ScenarioError> {
     match value {
         Value::String(name) => {
             let beside = folder.join(name);
@@ -120,7 +119,7 @@ fn scenario(value: &Value, place: &str, folder: &Path) -> Result<Scenario, Scena
                 false => Scenario::load(name),
             }
         }
-        whole => Scenario::parse(&whole.to_string(), place),
+        whole => Scenario::parse(&whole.to_string(), "written in one line"),
     }
 }
 

@@ -3,6 +3,7 @@
 // Every test file compiles this module and uses a part of it.
 #![allow(dead_code)]
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -99,6 +100,35 @@ pub fn record(scenario: &Scenario, seed: u64, options: &RunOptions) -> Record {
     let folder = parent.path().join("run");
     run_in(&folder, scenario, seed, options);
     Record::of(&folder)
+}
+
+/// The files below a folder whose names are wanted, by their places.
+pub fn files_below(folder: &Path, is_wanted: fn(&str) -> bool) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            if path.is_dir() {
+                folders.push(path);
+            } else if is_wanted(name) {
+                let place = path.strip_prefix(folder).unwrap().to_str().unwrap();
+                files.insert(place.to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+/// Fails where the wanted files below two folders are not the same.
+pub fn assert_same_files(one: &Path, other: &Path, is_wanted: fn(&str) -> bool) {
+    let (one, other) = (files_below(one, is_wanted), files_below(other, is_wanted));
+    let places = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(places(&one), places(&other));
+    for (place, bytes) in &one {
+        assert_same_bytes(bytes, &other[place], place);
+    }
 }
 
 /// Fails at the first byte that is not the same and shows what is there.
