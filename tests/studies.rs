@@ -19,7 +19,7 @@ use std::time::Duration;
 
 use common::{SHORT, output, program, stderr, stdout};
 use maxq_lab::evolution::Origin;
-use maxq_lab::lab::{Event, Keep, RunFolder, read_events, start};
+use maxq_lab::lab::{Event, Keep, RunFolder, read_events};
 use maxq_lab::report::{
     Arm, Base, Happening, Plan, Reevaluation, Stage, StatusWatch, Study, StudyControls, carry_out,
     status,
@@ -252,18 +252,26 @@ fn a_look_reads_what_has_changed_and_nothing_else() {
     assert_eq!(status(&study)[0].stage, Stage::Unreadable);
     fs::remove_file(&file).unwrap();
 
-    // A run that is done anew is followed from its first generation on.
+    // A run that is not over is followed from where it was.
     let folder = study.run_folder(&other);
-    fs::remove_dir_all(&folder).unwrap();
-    assert_eq!(stages(), [Stage::Evolved, Stage::Waiting]);
-    let scenario = study.arm(&other).apply(study.scenario(&other)).unwrap();
-    let begun = start(scenario, other.seed, &folder, &common::threads(1)).unwrap();
-    common::stop_after(begun, 2);
-    let looked = watch.look();
-    assert_eq!(looked[1].stage, Stage::Interrupted);
-    let generations = usize::try_from(looked[1].generations).unwrap();
-    assert_eq!(looked[1].best_steps.len(), generations);
-    assert!(generations >= 2);
+    for result in ["summary.json", "evaluation.json"] {
+        fs::remove_file(folder.join(result)).unwrap();
+    }
+    let log = folder.join("events.jsonl");
+    let whole = fs::read_to_string(&log).unwrap();
+    let lines: Vec<_> = whole.split_inclusive('\n').collect();
+    let mut look_after = |lived: usize| {
+        // The start of the run is a line too.
+        fs::write(&log, lines[..=lived].concat()).unwrap();
+        let looked = watch.look().remove(1);
+        assert_eq!(looked.generations, lived as u64);
+        assert_eq!(looked.best_steps.len(), lived);
+        looked.stage
+    };
+    assert_eq!(look_after(2), Stage::Interrupted);
+    assert_eq!(look_after(4), Stage::Interrupted);
+    assert_eq!(look_after(3), Stage::Interrupted, "some of it was cut off");
+    fs::write(&log, &whole).unwrap();
     do_all(&study);
     let ends = watch.look().into_iter().map(|status| status.stage);
     assert!(ends.eq([Stage::Done, Stage::Done]));

@@ -281,7 +281,10 @@ fn what_is_neither_plan_nor_study_nor_scenario_is_told_what_there_is() {
     let no_arms = r#"{"format":1,"name":"mine","scenarios":["smoke"],"seeds":"1"}"#;
     fs::write(parent.path().join("no-arms.json"), no_arms).unwrap();
     for (arguments, expected) in [
-        (&["evolving-taksi"][..], "plans are evolving-taxi, thesis, "),
+        (
+            &["evolving-taksi"][..],
+            "embedded plans are evolving-taxi, ",
+        ),
         (
             &["empty"],
             "empty: holds no study.json; allowed: the folder of",
