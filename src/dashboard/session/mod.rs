@@ -9,14 +9,14 @@ mod loader;
 mod runs;
 mod save;
 mod source;
+mod woken;
 
 use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, after, select};
+use crossbeam_channel::{Receiver, after};
 use crossterm::event::Event as Typed;
-use signal_hook::consts::SIGHUP;
 
 pub use runs::{RunsExit, RunsSession};
 pub use source::{Live, Source};
@@ -27,6 +27,7 @@ use super::{App, Desk, Effect, Input, Mouse};
 use crate::lab::specimen::{Archive, bench};
 use crate::lab::{Life, Manifest, News};
 use loader::{Loaded, Loader};
+use woken::{Woken, wait};
 
 /// Time between two looks whether the program is in the foreground again.
 const BACKGROUND: Duration = Duration::from_millis(250);
@@ -73,16 +74,6 @@ pub struct Session<'s> {
     drawn: Option<Instant>,
     /// Whether something may have changed that was not drawn.
     due: bool,
-}
-
-/// What a session waits for.
-enum Woken {
-    Typed(Option<Typed>),
-    Job(Job),
-    Drawn(io::Result<()>),
-    Signal(i32),
-    Loaded(Loaded),
-    Time,
 }
 
 impl<'s> Session<'s> {
@@ -258,31 +249,21 @@ impl<'s> Session<'s> {
         GAP.min(self.period).saturating_sub(since)
     }
 
-    fn wait(&self, signals: &Receiver<i32>) -> Woken {
+    fn wait(&self, signals: &Receiver<i32>) -> Woken<Loaded> {
         let mut left = self.period().saturating_sub(self.ticked.elapsed());
         // A terminal that is not ready tells when it is.
         if self.due && self.terminal.is_ready() {
             left = left.min(self.gap());
         }
-        let time = after(left);
-        select! {
-            recv(self.terminal.keys) -> typed => Woken::Typed(typed.ok()),
-            recv(self.terminal.jobs) -> job => job.map_or(Woken::Time, Woken::Job),
-            recv(self.terminal.drawn) -> drawn => drawn.map_or(Woken::Time, Woken::Drawn),
-            recv(signals) -> signal => signal.map_or(Woken::Time, Woken::Signal),
-            recv(self.loader.loaded) -> loaded => loaded.map_or(Woken::Time, Woken::Loaded),
-            recv(time) -> _ => Woken::Time,
-        }
+        wait(self.terminal, signals, &self.loader.loaded, &after(left))
     }
 
-    fn act(&mut self, woken: Woken) -> Option<Exit> {
+    fn act(&mut self, woken: Woken<Loaded>) -> Option<Exit> {
         match woken {
-            Woken::Time | Woken::Drawn(Ok(())) => None,
-            // No more keys come from a terminal that is gone.
-            Woken::Drawn(Err(_)) | Woken::Signal(SIGHUP) | Woken::Typed(None) => Some(Exit::HungUp),
-            Woken::Signal(signal) => Some(Exit::Signal(signal)),
-            Woken::Typed(Some(typed)) => self.typed(typed),
-            Woken::Loaded(Loaded { generation, state }) => {
+            Woken::Time | Woken::Drawn | Woken::Silence => None,
+            Woken::End(exit) => Some(exit),
+            Woken::Typed(typed) => self.typed(typed),
+            Woken::News(Loaded { generation, state }) => {
                 // What a person chose is shown at once, what evolution did in its time.
                 self.due |= !self.app.desk().follows();
                 let effects = self.app.update(Input::Population { generation, state });

@@ -2,10 +2,10 @@
 
 use std::io;
 
-use crossbeam_channel::{Receiver, after, never, select};
+use crossbeam_channel::{Receiver, after, never};
 use crossterm::event::Event as Typed;
-use signal_hook::consts::SIGHUP;
 
+use super::woken::{Woken, wait};
 use super::{BACKGROUND, Exit, input};
 use crate::dashboard::Input;
 use crate::dashboard::runs::{RunsEffect, RunsNews, RunsTable};
@@ -28,16 +28,6 @@ pub struct RunsSession<'s> {
     news: &'s Receiver<RunsNews>,
     /// Whether something has changed that was not drawn.
     due: bool,
-}
-
-/// What a session waits for.
-enum Woken {
-    Typed(Option<Typed>),
-    Job(Job),
-    Drawn(io::Result<()>),
-    Signal(i32),
-    News(Option<RunsNews>),
-    Time,
 }
 
 impl<'s> RunsSession<'s> {
@@ -94,47 +84,31 @@ impl<'s> RunsSession<'s> {
         self.due = true;
     }
 
-    fn wait(&self, signals: &Receiver<i32>) -> Woken {
+    fn wait(&self, signals: &Receiver<i32>) -> Woken<RunsNews> {
         let again = match self.terminal.is_shown() {
             true => never(),
             false => after(BACKGROUND),
         };
-        select! {
-            recv(self.terminal.keys) -> typed => Woken::Typed(typed.ok()),
-            recv(self.terminal.jobs) -> job => job.map_or(Woken::Time, Woken::Job),
-            recv(self.terminal.drawn) -> drawn => drawn.map_or(Woken::Time, Woken::Drawn),
-            recv(signals) -> signal => signal.map_or(Woken::Time, Woken::Signal),
-            recv(self.news) -> news => Woken::News(news.ok()),
-            recv(again) -> _ => Woken::Time,
-        }
+        wait(self.terminal, signals, self.news, &again)
     }
 
-    fn act(&mut self, woken: Woken) -> Option<RunsExit> {
-        let exit = match woken {
-            Woken::Drawn(Err(_)) | Woken::Signal(SIGHUP) | Woken::Typed(None) => Exit::HungUp,
-            Woken::Signal(signal) => Exit::Signal(signal),
-            Woken::News(None) => Exit::Failed,
-            Woken::Typed(Some(typed)) => return self.typed(&typed),
-            Woken::News(Some(news)) => {
-                self.due |= self.table.take_in(news);
-                return None;
+    fn act(&mut self, woken: Woken<RunsNews>) -> Option<RunsExit> {
+        match woken {
+            Woken::Drawn => {}
+            Woken::End(exit) => return Some(RunsExit::End(exit)),
+            Woken::Silence => return Some(RunsExit::End(Exit::Failed)),
+            Woken::Typed(typed) => return self.typed(&typed),
+            Woken::News(news) => self.due |= self.table.take_in(news),
+            Woken::Job(Job::Resize) => self.resize(),
+            Woken::Job(Job::Suspend) => self.terminal.suspend(),
+            Woken::Time if self.terminal.is_shown() => {}
+            Woken::Time | Woken::Job(Job::Continue) => {
+                if self.appear().is_err() {
+                    return Some(RunsExit::End(Exit::HungUp));
+                }
             }
-            Woken::Job(Job::Resize) => {
-                self.resize();
-                return None;
-            }
-            Woken::Job(Job::Suspend) => {
-                self.terminal.suspend();
-                return None;
-            }
-            Woken::Drawn(Ok(())) => return None,
-            Woken::Time if self.terminal.is_shown() => return None,
-            Woken::Time | Woken::Job(Job::Continue) => match self.appear() {
-                Ok(()) => return None,
-                Err(_) => Exit::HungUp,
-            },
-        };
-        Some(RunsExit::End(exit))
+        }
+        None
     }
 
     fn typed(&mut self, typed: &Typed) -> Option<RunsExit> {
