@@ -439,8 +439,12 @@ pub(super) fn body(area: Rect) -> Rect {
 pub(super) fn too_small(look: &Look, area: Rect, buffer: &mut Buffer) {
     let style = look.style(Paint::Notice);
     let (columns, rows) = SMALLEST;
+    let word = match area.width {
+        0..9 => "small",
+        _ => "too small",
+    };
     let lines = [
-        String::from("too small"),
+        String::from(word),
         format!("{}x{}", area.width, area.height),
         format!("needs {columns}x{rows}"),
     ];

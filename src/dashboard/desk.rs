@@ -12,6 +12,7 @@ use super::stage::{Stage, Subject};
 use super::views::ViewId;
 use crate::evolution::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Tree, parse};
+use crate::lab::departures;
 use crate::lab::specimen::Bench;
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
@@ -79,6 +80,8 @@ pub struct Desk {
     pub bench: &'static dyn Bench,
     /// The run folder, for people.
     pub folder: String,
+    /// The settings in which the scenario departs from the embedded one of its name.
+    pub changed: Vec<String>,
     /// The rollout of the individual that is looked at.
     pub stage: Stage,
     /// How the dashboard stands to its run.
@@ -125,9 +128,11 @@ impl Desk {
         look: Look,
         keys: KeyMap,
     ) -> Self {
+        let changed = departures(bench.scenario());
         Self {
             bench,
             folder,
+            changed: changed.iter().map(ToString::to_string).collect(),
             stage: Stage::new(bench),
             mode,
             look,

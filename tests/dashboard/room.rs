@@ -133,10 +133,38 @@ fn the_hierarchy_of_the_selected_individual_is_written_in_full() {
 fn ranks_by_chance_are_called_so() {
     let run = Recorded::new(&common::short(&["evolution.selection=random"]));
     let mut screen = run.screen("dark", Unicode, MIDDLE);
-    for (key, words) in [("4", "the 4 first by chance"), ("6", "ranked by chance")] {
+    for (key, words) in [
+        ("1", "drawn by chance"),
+        ("1", "ranked by chance"),
+        ("1", "middle "),
+        ("4", "the 4 first by chance"),
+        ("6", "ranked by chance"),
+    ] {
         screen.press(key);
         assert!(screen.text().contains(words), "{}", screen.text());
     }
+    assert!(
+        !foraging()
+            .screen("dark", Unicode, MIDDLE)
+            .text()
+            .contains("chance")
+    );
+}
+
+/// A scenario that is not quite the shipped one of its name says in what.
+#[test]
+fn settings_that_were_changed_are_told() {
+    let run = Recorded::new(&common::short(&["evolution.selection=random"]));
+    let screen = run.screen("dark", Unicode, MIDDLE);
+    let status = panel(&screen.text(), "Status");
+    assert!(
+        status.contains("changed") && status.contains(" more"),
+        "{status}"
+    );
+    let mut screen = run.screen("dark", Unicode, (120, 40));
+    screen.press("7");
+    let text = screen.text();
+    assert!(text.contains("evolution.generation_limit=6"), "{text}");
 }
 
 /// Both sides of a comparison are seen to their ends, in little room by pages.

@@ -8,7 +8,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use super::{THROUGH_TIME, View, by_chance, nothing_yet, over_generations};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Chart, Curve, Look, Paint, put, width};
+use crate::dashboard::look::{Chart, Curve, Paint, put, width};
 use crate::evolution::GenerationRecord;
 
 /// Fitness over generations (Thesis Figure 4.8), structural difference below (4.7).
@@ -68,7 +68,7 @@ impl View for Fitness {
             difference_chart.margin = chart.left();
         }
         chart.draw(look, above, buffer);
-        draw_legend(look, shown, legend, buffer);
+        draw_legend(desk, shown, legend, buffer);
         if two {
             difference_chart.draw(look, below, buffer);
             let text = format!("difference to the best {:.1}", shown.mean_difference);
@@ -171,18 +171,23 @@ fn difference_chart(desk: &Desk) -> Chart {
     over_generations(desk, vec![curve], [-1.0, 0.0]).rounded()
 }
 
-fn draw_legend(look: &Look, shown: &GenerationRecord, line: Rect, buffer: &mut Buffer) {
+fn draw_legend(desk: &Desk, shown: &GenerationRecord, line: Rect, buffer: &mut Buffer) {
+    let look = &desk.look;
     let Some(steps) = better_half_steps(shown) else {
         return;
     };
     let room = usize::from(line.width.saturating_sub(1));
     // Where curves are drawn with signs, the legend says whose sign is which.
+    let names = match by_chance(desk) {
+        Some(_) => ["first", "middle", "last"],
+        None => CURVES.map(|(name, _)| name),
+    };
     let entry = |index: usize, digits: usize| {
         let sign = match look.signs.dots {
             true => String::new(),
             false => format!("{} ", look.signs.series[(2 - index) % 3]),
         };
-        format!("{sign}{} {:.digits$}", CURVES[index].0, steps[index])
+        format!("{sign}{} {:.digits$}", names[index], steps[index])
     };
     let entries = |digits: usize| [0, 1, 2].map(|index| entry(index, digits));
     let needed =

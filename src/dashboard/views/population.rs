@@ -274,12 +274,12 @@ impl View for Population {
         desk.shown().map_or(String::new(), |record| {
             let count = record.individuals.len();
             let separator = desk.look.signs.separator;
-            let ranked =
-                by_chance(desk).map_or(String::new(), |words| format!(" {separator} {words}"));
-            format!(
-                "generation {}{ranked} {separator} {count} individuals",
-                record.generation
-            )
+            let generation = record.generation;
+            match by_chance(desk) {
+                // What matters most first, where there is little room.
+                Some(ranked) => format!("{ranked} {separator} generation {generation}"),
+                None => format!("generation {generation} {separator} {count} individuals"),
+            }
         })
     }
 

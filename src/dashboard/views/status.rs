@@ -5,7 +5,7 @@ use std::time::Duration;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::View;
+use super::{View, by_chance};
 use crate::dashboard::desk::{Desk, Mode};
 use crate::dashboard::header::activity;
 use crate::dashboard::keys::Action;
@@ -26,6 +26,9 @@ use crate::lab::Ending;
 /// ```
 pub(super) struct Status;
 
+/// The name of the settings that were changed.
+const CHANGED: &str = "changed";
+
 /// Column of the values.
 const VALUES: u16 = 13;
 
@@ -37,8 +40,8 @@ impl View for Status {
         for (name, value, paint) in facts(desk, room) {
             put(buffer, area, (1, row), name, look.style(Paint::Dim));
             let value = match name {
-                // Of a path the end tells more.
-                "folder" => fitted_end(&one_line(&value), room, look.signs),
+                // Of a path, of files or of settings, the end tells more.
+                "folder" | CHANGED | "" => fitted_end(&one_line(&value), room, look.signs),
                 _ => fitted(&one_line(&value), room, look.signs),
             };
             put(buffer, area, (VALUES, row), &value, look.style(paint));
@@ -95,6 +98,28 @@ fn facts(desk: &Desk, room: usize) -> Vec<Fact> {
         ("trials", trials, Paint::Text),
         ("folder", desk.folder.clone(), Paint::Text),
     ]);
+    if by_chance(desk).is_some() {
+        facts.push(("ranks", String::from("drawn by chance"), Paint::Notice));
+    }
+    facts.extend(changed(desk));
+    facts
+}
+
+/// Settings that are told one by one.
+const TOLD: usize = 4;
+
+/// In what the scenario departs from the embedded one of its name.
+fn changed(desk: &Desk) -> Vec<Fact> {
+    let names = std::iter::once(CHANGED).chain(std::iter::repeat(""));
+    let told = desk.changed.iter().take(TOLD);
+    let told = names
+        .zip(told)
+        .map(|(name, setting)| (name, setting.clone(), Paint::Text));
+    let mut facts: Vec<_> = told.collect();
+    match desk.changed.len().saturating_sub(TOLD) {
+        0 => {}
+        more => facts.push(("", format!("and {more} more"), Paint::Dim)),
+    }
     facts
 }
 
