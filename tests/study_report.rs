@@ -222,6 +222,14 @@ fn a_single_seed_has_no_interval_and_decides_nothing() {
             .all(|claim| claim.verdict == Some(Verdict::Undecided))
     );
     assert_eq!((findings.provenance.runs, findings.provenance.of), (9, 270));
+    // Before any run is done there is no version that did one.
+    let nothing = Findings::from_facts(&study, &[]).provenance.line();
+    let (before, command) = nothing.split_once("; ").unwrap();
+    assert!(before.ends_with("0 of 270 runs, seeds 1..30"), "{nothing}");
+    assert!(
+        command.starts_with("maxq-lab study study.json --out "),
+        "{nothing}"
+    );
 }
 
 /// The rows of a CSV text; fails where one has another number of fields.

@@ -5,6 +5,7 @@
 //! loading and saving again gives the same bytes.
 
 use std::io;
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Serializer;
@@ -14,7 +15,7 @@ use serde_json::value::RawValue;
 use super::checkpoint_error::CheckpointError;
 use super::population_file::{IndividualFile, PrimitiveFile, skills};
 use crate::evolution::{Experiment, State};
-use crate::files::parse_json;
+use crate::files::{parse_json, read_text};
 use crate::learning::{Skill, Skills};
 use crate::scenario::Scenario;
 use crate::worlds::World;
@@ -150,6 +151,17 @@ impl Checkpoint {
         bytes[..start].copy_from_slice(head(&crc32).as_bytes());
         bytes.extend_from_slice(b"}\n");
         Ok(bytes)
+    }
+
+    /// Reads the checkpoint in a file, if there is a file.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is none that this version of the program has written.
+    pub fn read(path: &Path) -> Result<Option<Self>, CheckpointError> {
+        if !path.exists() {
+            return Ok(None);
+        }
+        Self::from_text(&read_text(path, MAX_CHECKPOINT_BYTES)?).map(Some)
     }
 
     /// Reads the text of a file. Version and checksum are checked before anything else.

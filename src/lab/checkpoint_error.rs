@@ -3,12 +3,15 @@
 use thiserror::Error;
 
 use super::checkpoint::CHECKPOINT_FORMAT;
-use crate::files::JsonError;
+use crate::files::{JsonError, ReadError};
 use crate::scenario::ScenarioError;
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, Error)]
 pub enum CheckpointError {
+    /// Its file cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
     /// It is not the JSON of a checkpoint.
     #[error(transparent)]
     Syntax(#[from] JsonError),

@@ -5,7 +5,7 @@ use std::thread::{self, JoinHandle};
 
 use crossbeam_channel::Receiver;
 
-use super::checkpoint::{Checkpoint, MAX_CHECKPOINT_BYTES};
+use super::checkpoint::Checkpoint;
 use super::controls::Controls;
 use super::event::Event;
 use super::folder::{Keep, RunFolder};
@@ -17,7 +17,6 @@ use super::run_error::RunError;
 use super::work::Work;
 use super::worlds::{WorldTask, with_world};
 use crate::evolution::{Experiment, Workers};
-use crate::files::read_text;
 use crate::scenario::{PrimitiveLearning, Scenario};
 use crate::worlds::World;
 
@@ -105,7 +104,11 @@ pub fn resume(
 ) -> Result<Run, RunError> {
     let folder = RunFolder::open(path)?;
     let mut manifest = RunFolder::read_manifest(path)?;
-    let checkpoint = read_checkpoint(&folder.checkpoint())?;
+    let file = folder.checkpoint();
+    let checkpoint = Checkpoint::read(&file).map_err(|source| RunError::Checkpoint {
+        file: file.display().to_string(),
+        source,
+    })?;
     if let Some(checkpoint) = &checkpoint {
         checkpoint
             .check_origin(&manifest.scenario, manifest.seed)
@@ -151,21 +154,6 @@ fn workers(scenario: &Scenario, options: &RunOptions) -> Result<Workers, RunErro
         PrimitiveLearning::Shared => 1,
     };
     Workers::new(threads).map_err(|error| RunError::Threads(error.to_string()))
-}
-
-fn read_checkpoint(path: &Path) -> Result<Option<Checkpoint>, RunError> {
-    if !path.exists() {
-        return Ok(None);
-    }
-    let file = path.display().to_string();
-    let text = read_text(path, MAX_CHECKPOINT_BYTES).map_err(|source| RunError::Read {
-        file: file.clone(),
-        source,
-    })?;
-    let checkpoint = Checkpoint::from_text(&text);
-    checkpoint
-        .map(Some)
-        .map_err(|source| RunError::Checkpoint { file, source })
 }
 
 /// Where a run is kept.

@@ -7,7 +7,6 @@ use super::folder_error::FolderError;
 use super::log::LogError;
 use super::recorder::RecordError;
 use super::worlds::SetupError;
-use crate::files::ReadError;
 
 /// Why a run cannot begin, or had to end.
 #[derive(Debug, Error)]
@@ -18,14 +17,6 @@ pub enum RunError {
     /// The run folder cannot be used.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// The checkpoint cannot be read.
-    #[error("{file}: {source}")]
-    Read {
-        /// The file.
-        file: String,
-        /// Why.
-        source: ReadError,
-    },
     /// The checkpoint cannot be used.
     #[error("{file}: {source}")]
     Checkpoint {

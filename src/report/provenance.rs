@@ -59,10 +59,12 @@ impl Provenance {
             command,
             ..
         } = self;
-        let versions = self.versions.join(", ");
+        let versions = match self.versions.as_slice() {
+            [] => String::new(),
+            versions => format!(", maxq-lab {}", versions.join(", ")),
+        };
         format!(
-            "Study {study} (CRC-32 of study.json {plan_crc32}): {runs} of {of} runs, seeds {seeds}, maxq-lab {versions}; \
-             {command}"
+            "Study {study} (CRC-32 of study.json {plan_crc32}): {runs} of {of} runs, seeds {seeds}{versions}; {command}"
         )
     }
 }

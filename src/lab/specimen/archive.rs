@@ -9,8 +9,7 @@ use thiserror::Error;
 
 use super::Bench;
 use crate::evolution::State;
-use crate::files::{ReadError, read_text};
-use crate::lab::checkpoint::{Checkpoint, MAX_CHECKPOINT_BYTES};
+use crate::lab::checkpoint::Checkpoint;
 use crate::lab::checkpoint_error::CheckpointError;
 use crate::lab::controls::Controls;
 
@@ -36,14 +35,6 @@ pub enum ArchiveError {
     Nothing {
         /// The run folder.
         folder: String,
-    },
-    /// A file cannot be read.
-    #[error("{file}: {source}")]
-    Read {
-        /// The file.
-        file: String,
-        /// Why.
-        source: ReadError,
     },
     /// A file is not the checkpoint of this run.
     #[error("{file}: {source}")]
@@ -140,19 +131,14 @@ impl Archive {
 
     /// The population in a file, if there is a file.
     fn read(&self, path: &Path) -> Result<Option<State>, ArchiveError> {
-        if !path.exists() {
-            return Ok(None);
-        }
         let file = path.display().to_string();
-        let text = read_text(path, MAX_CHECKPOINT_BYTES).map_err(|source| ArchiveError::Read {
-            file: file.clone(),
-            source,
-        })?;
         let wrong = |source| ArchiveError::Checkpoint {
             file: file.clone(),
             source,
         };
-        let checkpoint = Checkpoint::from_text(&text).map_err(wrong)?;
+        let Some(checkpoint) = Checkpoint::read(path).map_err(wrong)? else {
+            return Ok(None);
+        };
         checkpoint
             .check_origin(self.bench.scenario(), self.bench.seed())
             .map_err(|message| ArchiveError::Foreign {

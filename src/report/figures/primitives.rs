@@ -5,17 +5,13 @@ use std::path::Path;
 
 use super::{Chart, Series};
 use crate::evolution::Experiment;
-use crate::files::read_text;
-use crate::lab::{Checkpoint, SetupError, WorldTask, with_world};
+use crate::lab::{Checkpoint, CheckpointError, SetupError, WorldTask, with_world};
 use crate::learning::Skill;
 use crate::scenario::Scenario;
 use crate::worlds::{Kind, Probe, World};
 
 /// Points of a line.
 const POINTS: usize = 121;
-
-/// Largest checkpoint that is read, in bytes.
-const MAX_BYTES: u64 = 1 << 30;
 
 /// A chart for every primitive subtask that looks at a single reading.
 ///
@@ -34,12 +30,10 @@ impl WorldTask for OfCheckpoint<'_> {
     type Output = Result<Vec<Chart>, String>;
 
     fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let file = self.0.join("checkpoint.json");
-        let text =
-            read_text(&file, MAX_BYTES).map_err(|error| format!("checkpoint.json: {error}"))?;
-        let state = Checkpoint::from_text(&text)
-            .and_then(|checkpoint| checkpoint.state(&experiment))
-            .map_err(|error| format!("checkpoint.json: {error}"))?;
+        let wrong = |error: CheckpointError| format!("checkpoint.json: {error}");
+        let checkpoint = Checkpoint::read(&self.0.join("checkpoint.json")).map_err(wrong)?;
+        let checkpoint = checkpoint.ok_or("holds no checkpoint.json")?;
+        let state = checkpoint.state(&experiment).map_err(wrong)?;
         let charts = state
             .skills
             .all()
