@@ -9,7 +9,7 @@ use super::{View, by_chance};
 use crate::dashboard::desk::{Desk, Mode};
 use crate::dashboard::header::activity;
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put};
+use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put, width};
 use crate::lab::Ending;
 
 /// What the run is doing.
@@ -26,9 +26,6 @@ use crate::lab::Ending;
 /// ```
 pub(super) struct Status;
 
-/// The name of the settings that were changed.
-const CHANGED: &str = "changed";
-
 /// Column of the values.
 const VALUES: u16 = 13;
 
@@ -40,8 +37,8 @@ impl View for Status {
         for (name, value, paint) in facts(desk, room) {
             put(buffer, area, (1, row), name, look.style(Paint::Dim));
             let value = match name {
-                // Of a path, of files or of settings, the end tells more.
-                "folder" | CHANGED | "" => fitted_end(&one_line(&value), room, look.signs),
+                // Of a path the end tells more.
+                "folder" => fitted_end(&one_line(&value), room, look.signs),
                 _ => fitted(&one_line(&value), room, look.signs),
             };
             put(buffer, area, (VALUES, row), &value, look.style(paint));
@@ -101,20 +98,30 @@ fn facts(desk: &Desk, room: usize) -> Vec<Fact> {
     if by_chance(desk).is_some() {
         facts.push(("ranks", String::from("drawn by chance"), Paint::Notice));
     }
-    facts.extend(changed(desk));
+    facts.extend(changed(desk, room));
     facts
 }
 
 /// Settings that are told one by one.
 const TOLD: usize = 4;
 
+/// A setting with as much of its path as there is room for.
+fn in_columns(setting: &str, room: usize) -> String {
+    let (path, value) = setting.split_once('=').unwrap_or((setting, ""));
+    let inner = path.match_indices('.').map(|(dot, _)| &path[dot + 1..]);
+    let mut shorter = std::iter::once(path).chain(inner);
+    let fits = |path: &&str| width(path) + 1 + width(value) <= room;
+    let path = shorter.find(fits).or(path.rsplit('.').next());
+    format!("{}={value}", path.unwrap_or(""))
+}
+
 /// In what the scenario departs from the embedded one of its name.
-fn changed(desk: &Desk) -> Vec<Fact> {
-    let names = std::iter::once(CHANGED).chain(std::iter::repeat(""));
+fn changed(desk: &Desk, room: usize) -> Vec<Fact> {
+    let names = std::iter::once("changed").chain(std::iter::repeat(""));
     let told = desk.changed.iter().take(TOLD);
     let told = names
         .zip(told)
-        .map(|(name, setting)| (name, setting.clone(), Paint::Text));
+        .map(|(name, setting)| (name, in_columns(setting, room), Paint::Text));
     let mut facts: Vec<_> = told.collect();
     match desk.changed.len().saturating_sub(TOLD) {
         0 => {}
@@ -213,5 +220,14 @@ mod tests {
         assert_eq!(thousands(7), "7");
         assert_eq!(thousands(1_791_820), "1 791 820");
         assert_eq!(duration(Duration::from_secs(3725)), "1 h 2 min");
+    }
+
+    #[test]
+    fn a_setting_keeps_its_last_name() {
+        let setting = "world.foraging.turn.rate=0.5";
+        assert_eq!(in_columns(setting, 40), setting);
+        assert_eq!(in_columns(setting, 14), "turn.rate=0.5");
+        assert_eq!(in_columns(setting, 9), "rate=0.5");
+        assert_eq!(in_columns(setting, 3), "rate=0.5");
     }
 }
