@@ -6,7 +6,7 @@ use rand::seq::SliceRandom;
 use super::tree::Tree;
 use super::typing::check;
 use crate::random::Stream;
-use crate::worlds::{Catalogue, StateTypes, SubtaskId};
+use crate::worlds::{Catalogue, SubtaskId};
 
 /// Draws of a random hierarchy before the flat one is taken instead. Of the foraging
 /// task's draws about one in four obeys the rules.
@@ -34,7 +34,7 @@ fn complete_below(
         if container(child, catalogue) == Some(parent) {
             preorder.push((child, depth));
             complete_below(child, depth + 1, catalogue, preorder);
-            left = without(left, active(child));
+            left = left.without(active(child));
         }
     }
     let primitives = catalogue.primitives().filter(|&id| active(id).meets(left));
@@ -51,11 +51,6 @@ fn container(composite: SubtaskId, catalogue: &Catalogue) -> Option<SubtaskId> {
         .filter(|&other| own.is_subset_of(states(other)) && own != states(other));
     let smallest = containing.min_by_key(|&other| states(other).len());
     smallest.or_else(|| (composite != SubtaskId::ROOT).then_some(SubtaskId::ROOT))
-}
-
-fn without(states: StateTypes, gone: StateTypes) -> StateTypes {
-    let left: Vec<_> = states.iter().filter(|&t| !gone.contains(t)).collect();
-    StateTypes::of(&left)
 }
 
 /// The flat hierarchy: a root that chooses among all primitive subtasks.

@@ -116,6 +116,17 @@ pub fn to_text(tree: &Tree, catalogue: &Catalogue) -> String {
     )
 }
 
+/// The length of the text form in bytes.
+pub(super) fn text_bytes(tree: &Tree, catalogue: &Catalogue) -> usize {
+    let nodes = (0..tree.nodes().len()).map(|node| {
+        let has_children = tree.children(node).next().is_some();
+        // A space or nothing before it, parentheses around it and its children.
+        let around = usize::from(node > 0) + 2 * usize::from(has_children);
+        tree.subtask(node).name(catalogue).len() + around
+    });
+    nodes.sum()
+}
+
 /// Writes the canonical structure: the text form with children sorted, equal for
 /// two trees exactly if they are the same when the order of children is ignored.
 #[must_use]

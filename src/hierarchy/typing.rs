@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::text::{MAX_TEXT_BYTES, text_bytes};
 use super::tree::Tree;
 use crate::worlds::{Catalogue, StateTypes, SubtaskId};
 
@@ -67,6 +68,12 @@ pub enum TypingError {
         /// Largest depth allowed.
         maximum: usize,
     },
+    /// Its text would be too long to be read again.
+    #[error("the text has {found} bytes; allowed: at most {MAX_TEXT_BYTES}")]
+    TooLong {
+        /// Length of the text form in bytes.
+        found: usize,
+    },
     /// In some state type no subtask of the tree can act.
     #[error(
         "nothing can act in state types {missing}; allowed: a root that can act in all of them"
@@ -100,6 +107,10 @@ pub fn check(tree: &Tree, catalogue: &Catalogue, maximum_depth: usize) -> Result
             depth,
             maximum: maximum_depth,
         });
+    }
+    let found = text_bytes(tree, catalogue);
+    if found > MAX_TEXT_BYTES {
+        return Err(TypingError::TooLong { found });
     }
     let able = able(tree, catalogue)[0];
     let missing: Vec<_> = catalogue.types().filter(|&t| !able.contains(t)).collect();
@@ -162,7 +173,8 @@ fn check_repeats(tree: &Tree, catalogue: &Catalogue) -> Result<(), TypingError> 
 }
 
 /// For each node the state types in which it can act: a primitive where it is
-/// active, a composite where it is active and at least one child can act.
+/// active, a composite where it is active, has not reached its goal, and at least one
+/// child can act.
 #[must_use]
 pub fn able(tree: &Tree, catalogue: &Catalogue) -> Vec<StateTypes> {
     let mut able = vec![StateTypes::default(); tree.nodes().len()];
@@ -171,7 +183,7 @@ pub fn able(tree: &Tree, catalogue: &Catalogue) -> Vec<StateTypes> {
         able[node] = if subtask.is_composite() {
             let children = tree.children(node).map(|child| able[child]);
             let any = children.fold(StateTypes::default(), StateTypes::union);
-            subtask.active.intersection(any)
+            subtask.active.without(subtask.goal()).intersection(any)
         } else {
             subtask.active
         };

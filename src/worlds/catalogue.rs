@@ -62,6 +62,12 @@ impl StateTypes {
         Self(self.0 & other.0)
     }
 
+    /// The types of this set that are not in the other.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
     /// How many types the set holds.
     #[must_use]
     pub const fn len(self) -> usize {
@@ -378,6 +384,7 @@ mod tests {
         assert!(some.meets(more) && !some.meets(of(&[0, 2])));
         assert_eq!(some.union(of(&[0])), more);
         assert_eq!(more.intersection(of(&[0, 2])), of(&[0]));
+        assert_eq!(more.without(of(&[0, 2])), some);
         assert_eq!((more.len(), more.rank(StateType(3))), (3, 2));
         assert_eq!(more.to_string(), "1,2,4");
     }

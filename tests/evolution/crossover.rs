@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maxq_lab::evolution::{Individual, Inherited, Origin, Parent, crossover};
-use maxq_lab::hierarchy::parse;
+use maxq_lab::hierarchy::{parse, to_text};
 use maxq_lab::learning::CompositeValues;
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::scenario::{Inheritance, Scenario};
@@ -210,6 +210,32 @@ fn every_valid_pair_of_sites_is_as_likely_as_any_other() {
         counts[pair.expect("a valid pair")] += 1;
     }
     assert_frequencies(&counts, &vec![1.0 / pairs.len() as f64; pairs.len()]);
+}
+
+/// A hierarchy that is too long to be read again would end the run that it is saved in.
+#[test]
+fn offspring_are_not_longer_than_can_be_read_again() {
+    let mut scenario = Scenario::load("environment-1").unwrap();
+    scenario.evolution.maximum_depth = 3;
+    let catalogue = WORLD.catalogue();
+    let mut rng = chance(4);
+    let wanders = "Wander ".repeat(280);
+    let [a, b] = [
+        format!("(Root {wanders}(Capture {wanders}Avoid))"),
+        format!("(Root {wanders}(Deliver {wanders}Avoid))"),
+    ]
+    .map(|text| learned(1, parse(&text, catalogue).unwrap(), catalogue, &mut rng));
+    let mut draws = stream(2, 0, 0, Purpose::Breeding);
+    let mut longest = 0;
+    for _ in 0..200 {
+        let offspring = crossover(&a, &b, [2, 3], &scenario, catalogue, &mut draws).unwrap();
+        for child in &offspring {
+            let text = to_text(child.hierarchy.tree(), catalogue);
+            assert!(parse(&text, catalogue).is_ok(), "{} bytes", text.len());
+            longest = longest.max(text.len());
+        }
+    }
+    assert!(longest > 3900, "the limit is nearly reached: {longest}");
 }
 
 #[test]
