@@ -16,6 +16,9 @@ use crate::worlds::{Catalogue, SubtaskId};
 
 /// Draws of a place after which a hierarchy counts as one that cannot be mutated.
 const MAX_DRAWS: usize = 200;
+/// Draws of what hangs below a new composite child before its place counts as one where
+/// it cannot be. About one in four of foraging's has no children and obeys no rule.
+const MAX_SUBTREE_DRAWS: usize = 50;
 
 /// The individual after the mutations that chance decides on: first pruning, then growth,
 /// each with its own probability. Where that is zero no random number is drawn.
@@ -95,12 +98,16 @@ fn grown(
     let drawn = (0..MAX_DRAWS).find_map(|_| {
         let parent = rng.random_range(0..tree.nodes().len());
         let child = SubtaskId(rng.random_range(1..catalogue.subtasks.len()) as u8);
-        let has_it = children(tree, parent).contains(&child);
+        if children(tree, parent).contains(&child) {
+            return None;
+        }
         let room = depth.checked_sub(tree.nodes()[parent].depth)?;
-        let subtree = random_subtree(child, tree, catalogue, room, rng);
-        let more = tree.grown(parent, &subtree);
-        let fits = !has_it && is_valid(&more, scenario, catalogue);
-        fits.then_some((parent, subtree, more))
+        let (subtree, more) = (0..MAX_SUBTREE_DRAWS).find_map(|_| {
+            let subtree = random_subtree(child, tree, catalogue, room, rng);
+            let more = tree.grown(parent, &subtree);
+            is_valid(&more, scenario, catalogue).then_some((subtree, more))
+        })?;
+        Some((parent, subtree, more))
     });
     let Some((parent, subtree, more)) = drawn else {
         return individual;

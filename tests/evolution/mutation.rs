@@ -194,6 +194,36 @@ fn every_node_that_can_be_spared_is_as_likely_as_any_other() {
     assert_frequencies(&counts, &[1.0 / 8.0; 8]);
 }
 
+/// Whether it is a primitive subtask or a composite one that nearly always has to be drawn
+/// again.
+#[test]
+fn every_child_that_can_grow_is_as_likely_as_any_other() {
+    let catalogue = WORLD.catalogue();
+    let tree = parse(
+        "(Root Avoid Wander ApproachBattery ApproachNest)",
+        catalogue,
+    )
+    .unwrap();
+    let old = copied(learned(1, tree, catalogue, &mut chance(1)));
+    let possible = [
+        "Capture",
+        "Deliver",
+        "FindBattery",
+        "VisibleBattery",
+        "FindNest",
+        "VisibleNest",
+        "Turn",
+    ];
+    let mut counts = [0; 7];
+    let mut draws = stream(1, 0, 0, Purpose::Breeding);
+    for _ in 0..20_000 {
+        let new = mutated(old.clone(), &scenario(0.0, 1.0), catalogue, &mut draws);
+        let grown = nested(&new, catalogue).children.pop().unwrap().name;
+        counts[possible.iter().position(|name| *name == grown).unwrap()] += 1;
+    }
+    assert_frequencies(&counts, &[1.0 / 7.0; 7]);
+}
+
 /// Runs without mutation are what they were before there was any.
 #[test]
 fn without_mutation_nothing_is_drawn() {
