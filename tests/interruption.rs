@@ -254,7 +254,10 @@ fn another_generation_limit_is_as_good_as_the_first() {
     let run = resume(&interrupted, Some(7), &threads(2)).unwrap();
     run.controls.stop();
     run.join().unwrap();
+    // It goes on, so the result of limit 3 is not its result any more.
+    assert!(!interrupted.join("summary.json").exists());
     assert_eq!(resumed(&interrupted, None).generations, 7);
+    assert!(interrupted.join("summary.json").exists());
     Record::of(&interrupted).assert_same(&expected, "limit 7, stopped before a generation");
 
     let shorter = parent.path().join("shorter");

@@ -9,7 +9,7 @@ use super::newborn::newborn;
 use crate::hierarchy::random_tree;
 use crate::learning::{Gate, Stopped};
 use crate::random::Stream;
-use crate::scenario::{Scenario, Variation};
+use crate::scenario::{Inheritance, Scenario, Variation};
 use crate::worlds::Catalogue;
 
 /// Pairs of parents drawn before two places are filled by copies instead.
@@ -63,7 +63,7 @@ pub(super) fn breed(
             let [a, b] = last.map(|rank| &survivors[rank]);
             crossover(a, b, ids, scenario, catalogue, rng)
         });
-        let copies = || [0, 1].map(|i| copy(&survivors[last[i]], ids[i]));
+        let copies = || [0, 1].map(|i| copy(&survivors[last[i]], ids[i], scenario, catalogue));
         let offspring = crossed.unwrap_or_else(copies);
         population.extend(offspring.map(|child| mutated(child, scenario, catalogue, rng)));
     }
@@ -111,14 +111,23 @@ fn tournament(candidates: &[usize], size: usize, rng: &mut Stream) -> usize {
     drawn.min().unwrap_or(0)
 }
 
-fn copy(from: &Individual, id: u64) -> Individual {
+/// A new individual with the structure of another, and what that has learned, unless
+/// inheritance is Darwinian.
+fn copy(from: &Individual, id: u64, scenario: &Scenario, catalogue: &Catalogue) -> Individual {
+    let (hierarchy, skills) = match scenario.evolution.inheritance {
+        Inheritance::Lamarckian => (from.hierarchy.clone(), from.skills.clone()),
+        Inheritance::Darwinian => {
+            let tree = from.hierarchy.tree().clone();
+            (newborn(tree, &scenario.learning, catalogue), None)
+        }
+    };
     Individual {
         id,
         origin: Origin::Copied {
             from: from.id,
             mutations: Vec::new(),
         },
-        hierarchy: from.hierarchy.clone(),
-        skills: from.skills.clone(),
+        hierarchy,
+        skills,
     }
 }

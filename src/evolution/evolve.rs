@@ -36,6 +36,14 @@ pub struct State {
     pub converged: bool,
 }
 
+impl State {
+    /// Whether evolution is over: converged, or at the generation limit.
+    #[must_use]
+    pub fn is_over(&self, generation_limit: u64) -> bool {
+        self.converged || self.generation >= generation_limit
+    }
+}
+
 /// An evolution under way.
 #[derive(Debug)]
 pub struct Evolution<'e, W: World> {
@@ -106,7 +114,7 @@ impl<'e, W: World> Evolution<'e, W> {
     #[must_use]
     pub fn is_over(&self) -> bool {
         let limit = self.experiment.scenario.evolution.generation_limit;
-        self.state.converged || self.state.generation >= limit
+        self.state.is_over(limit)
     }
 
     /// Only crossover can make one structure of many; without it the limit is the end.
@@ -218,7 +226,8 @@ impl<'e, W: World> Evolution<'e, W> {
         Ok((lives, self.state.skills.clone()))
     }
 
-    /// Line 4: indices from best to worst; of equals, the one made first is better.
+    /// Line 4: indices from best to worst; of equals, the one is better that stands first
+    /// in the population: the reproduced as they were ranked, then by id.
     fn ranks(&self, lives: &[Life], generation: u64) -> Vec<usize> {
         let mut order: Vec<_> = (0..lives.len()).collect();
         match self.experiment.scenario.evolution.selection {

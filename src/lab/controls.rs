@@ -139,10 +139,7 @@ impl Controls {
 
     /// A generation is over: a run that was stepping waits.
     pub(super) fn generation_over(&self) {
-        let stepping = self.activity() == Activity::Stepping;
-        if stepping {
-            self.pause();
-        }
+        self.change_from(|from| from == Activity::Stepping, Activity::Paused);
     }
 
     fn lock(&self) -> MutexGuard<'_, Activity> {
@@ -153,9 +150,14 @@ impl Controls {
     }
 
     fn change(&self, to: Activity) {
+        self.change_from(|_| true, to);
+    }
+
+    /// Changes what the run does, where `applies` to what it does now.
+    fn change_from(&self, applies: impl Fn(Activity) -> bool, to: Activity) {
         let mut activity = self.lock();
         let from = *activity;
-        if from == Activity::Stopped || from == to {
+        if from == Activity::Stopped || from == to || !applies(from) {
             return;
         }
         *activity = to;

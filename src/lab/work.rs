@@ -155,6 +155,14 @@ impl<W: World> Work<W> {
                 control_steps: controls.control_steps(),
             });
         };
+        let limit = scenario.evolution.generation_limit;
+        if !self
+            .state
+            .as_ref()
+            .is_some_and(|state| state.is_over(limit))
+        {
+            self.forget_summary();
+        }
         let mut evolution = match self.state.clone() {
             Some(state) => {
                 Evolution::resume(&self.experiment, workers, seed, state, controls.gate())?
@@ -203,6 +211,13 @@ impl<W: World> Work<W> {
         )?;
         progress.over = true;
         Ok(())
+    }
+
+    /// A run that was over and goes on is over no longer: whatever becomes of this process,
+    /// the result of before must not count as that of the run. Where it cannot be removed
+    /// it will be written anew at the end.
+    fn forget_summary(&self) {
+        let _gone = std::fs::remove_file(self.folder.summary());
     }
 
     /// Records an event and tells it.
