@@ -155,7 +155,7 @@ impl<'r, W: World> Agent<'r, W> {
         Trial {
             state,
             steps: 0,
-            done: false,
+            done: self.now.state_type == self.world.catalogue().terminal(),
             reward: 0.0,
         }
     }

@@ -124,7 +124,9 @@ impl<W: Scenic + 'static> Bench for WorldBench<W> {
             variant,
         } = start;
         let world = &self.experiment.world;
-        world.state_at(at, heading, variant, &mut rng).is_some()
+        let state = world.state_at(at, heading, variant, &mut rng);
+        let terminal = world.catalogue().terminal();
+        state.is_some_and(|state| world.state_type(&state) != terminal)
     }
 
     fn profiles(&self, specimen: Specimen<'_>, node: usize) -> Vec<Profile> {

@@ -88,7 +88,7 @@ pub trait Bench: Send + Sync {
         start: Option<Start>,
     ) -> Box<dyn Rollout>;
 
-    /// Whether the agent can be there.
+    /// Whether the agent can be there, and its task is not done there.
     fn can_begin(&self, start: Start) -> bool;
 
     /// The learned values of a node, over the inputs that it looks at.
