@@ -201,13 +201,27 @@ impl Question for Args {
         );
         // Where the policy is given there is none that becomes optimal. Writing to a string
         // cannot fail.
-        if let Some(at_the_end) = learned.final_greedy_return {
+        if !learned.policy_is_given {
+            let ends = |course: &&Course| {
+                let last = course.checks.last();
+                last.is_some_and(|check| check.greedy_return.is_some())
+            };
+            let ending = learned.repeats.iter().filter(ends).count();
+            let at_the_end = learned.final_greedy_return.map_or_else(
+                || {
+                    format!(
+                        "comes to an end in {ending} of {} only",
+                        counted(learned.repeats.len() as u64, "repeat")
+                    )
+                },
+                |mean| interval(mean, 4),
+            );
             let _ = write!(
                 text,
                 "of the greedy policy at the end         {}\n\
                  primitive steps until it is optimal     {}\n\
                  until it is and stays so                {}\n",
-                interval(at_the_end, 4),
+                at_the_end,
                 reached(learned, learned.steps_until_optimal, |course| course
                     .steps_until_optimal),
                 reached(learned, learned.steps_until_always_optimal, |course| {

@@ -14,8 +14,8 @@ use crate::random::{Purpose, stream};
 use crate::worlds::World;
 use crate::worlds::finite::{FiniteModel, MAX_SWEEPS, PolicyTable};
 
-/// Sweeps for the value of a greedy policy: one that has not come to an end after as many
-/// steps is far from optimal, and how far does not matter.
+/// Sweeps for the value of a greedy policy, or four times as many as the optimal values took: one
+/// that has not come to an end after as many steps is far from optimal.
 const CHECK_SWEEPS: usize = 300;
 
 /// A learning algorithm.
@@ -65,7 +65,7 @@ pub struct LearnCheck {
     /// `null` if none did.
     pub return_while_learning: Option<f64>,
     /// Exact expected return of the greedy policy from a random start; `null` for TD(0),
-    /// whose policy is given.
+    /// whose policy is given, and for a policy that does not come to an end.
     pub greedy_return: Option<f64>,
     /// Largest difference of a learned value to the exact one.
     pub largest_error: f64,
@@ -97,7 +97,9 @@ pub struct Learned {
     pub steps_until_optimal: Option<Mean>,
     /// Mean of [`Course::steps_until_always_optimal`], where all repeats got there.
     pub steps_until_always_optimal: Option<Mean>,
-    /// Mean of the last checks' greedy returns.
+    /// Whether the policy is given, and none becomes optimal: TD(0).
+    pub policy_is_given: bool,
+    /// Mean of the last checks' greedy returns, where all repeats' policies come to an end.
     pub final_greedy_return: Option<Mean>,
     /// The exact values: optimal ones, for TD(0) those of its policy.
     #[serde(skip)]
@@ -170,6 +172,7 @@ pub fn learn<W: World>(
         steps_until_always_optimal: all(|course| {
             course.steps_until_always_optimal.map(|steps| steps as f64)
         }),
+        policy_is_given: exam.policy.is_some(),
         final_greedy_return: all(|course| course.checks.last()?.greedy_return),
         exact: existing
             .map(|(state, &value)| state.as_ref().map(|_| value))
@@ -188,6 +191,8 @@ struct Exam<'f, P> {
     /// What the learned values should be.
     exact: Vec<f64>,
     optimal_return: f64,
+    /// Sweeps for the value of a greedy policy.
+    check_sweeps: usize,
 }
 
 impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
@@ -197,7 +202,7 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
         protocol: &'f LearnProtocol,
         discount: f64,
     ) -> Self {
-        let optimal = finite.optimal_values(discount);
+        let (optimal, sweeps) = finite.optimal_values(discount);
         let policy = match algorithm {
             Algorithm::Td0(GivenPolicy::Optimal) => Some(finite.best_policy(&optimal, discount)),
             Algorithm::Td0(GivenPolicy::Random) => Some(finite.random_policy()),
@@ -205,7 +210,7 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
         };
         let exact = policy
             .as_ref()
-            .map(|policy| finite.policy_values(policy, discount, MAX_SWEEPS));
+            .map(|policy| finite.policy_values(policy, discount, MAX_SWEEPS).0);
         Self {
             optimal_return: finite.value_at_start(&optimal),
             exact: exact.unwrap_or(optimal),
@@ -213,6 +218,7 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
             protocol,
             discount,
             policy,
+            check_sweeps: CHECK_SWEEPS.max(4 * sweeps),
         }
     }
 
@@ -258,7 +264,7 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
     }
 
     fn check<L: Learner<P>>(&self, steps: u64, recent: &[f64], learner: &mut L) -> LearnCheck {
-        let greedy = self.policy.is_none().then(|| {
+        let greedy = self.policy.is_none().then(|| -> Option<f64> {
             let policy = self.finite.states.iter().map(|state| {
                 let mut shares = vec![0.0; self.finite.actions.len()];
                 if let Some(action) = state.as_ref().and_then(|s| learner.greedy(s)) {
@@ -266,19 +272,30 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
                 }
                 shares
             });
-            let values = self
-                .finite
-                .policy_values(&policy.collect(), self.discount, CHECK_SWEEPS);
-            self.finite.value_at_start(&values)
+            self.settled_return(&policy.collect())
         });
         let errors = self.values(learner).into_iter().zip(&self.exact);
         let errors = errors.filter_map(|(value, exact)| Some((value? - exact).abs()));
         LearnCheck {
             steps,
             return_while_learning: mean(recent).map(|mean| mean.mean),
-            greedy_return: greedy,
-            largest_error: errors.fold(0.0, f64::max),
+            greedy_return: greedy.flatten(),
+            // A learner that has diverged is infinitely wrong, not right.
+            largest_error: errors.max_by(f64::total_cmp).unwrap_or(0.0),
         }
+    }
+
+    /// The expected return of a policy from a random start; `None` where more steps would
+    /// change it, for it does not come to an end. It may loop where no trial comes to.
+    fn settled_return(&self, policy: &PolicyTable) -> Option<f64> {
+        let after = |sweeps| self.finite.policy_values(policy, self.discount, sweeps);
+        let (values, sweeps) = after(self.check_sweeps);
+        let value = self.finite.value_at_start(&values);
+        if sweeps < self.check_sweeps {
+            return Some(value);
+        }
+        let later = self.finite.value_at_start(&after(2 * self.check_sweeps).0);
+        ((later - value).abs() < 1e-9).then_some(later)
     }
 
     /// The learned value of every state; 0 in terminal ones.

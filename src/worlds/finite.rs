@@ -52,9 +52,10 @@ pub struct FiniteModel<P> {
 pub type PolicyTable = Vec<Vec<f64>>;
 
 impl<P> FiniteModel<P> {
-    /// The optimal values (Thesis Eq. 2.10), by value iteration.
+    /// The optimal values (Thesis Eq. 2.10), by value iteration, and how many sweeps over
+    /// all states these took.
     #[must_use]
-    pub fn optimal_values(&self, discount: f64) -> Vec<f64> {
+    pub fn optimal_values(&self, discount: f64) -> (Vec<f64>, usize) {
         self.iterate(MAX_SWEEPS, |_, state, values| {
             let all = state.outcomes.iter();
             all.map(|outcomes| expected(outcomes, values, discount))
@@ -62,10 +63,16 @@ impl<P> FiniteModel<P> {
         })
     }
 
-    /// The values of a policy (Thesis Eq. 2.8), by at most `sweeps` sweeps over all states:
-    /// those of at least as many steps.
+    /// The values of a policy (Thesis Eq. 2.8), by at most `sweeps` sweeps over all states,
+    /// and how many these took: if all, the values have not settled and are those of at
+    /// least as many steps.
     #[must_use]
-    pub fn policy_values(&self, policy: &PolicyTable, discount: f64, sweeps: usize) -> Vec<f64> {
+    pub fn policy_values(
+        &self,
+        policy: &PolicyTable,
+        discount: f64,
+        sweeps: usize,
+    ) -> (Vec<f64>, usize) {
         self.iterate(sweeps, |index, state, values| {
             let all = state.outcomes.iter().zip(&policy[index]);
             all.filter(|&(_, &probability)| probability > 0.0)
@@ -119,9 +126,9 @@ impl<P> FiniteModel<P> {
         &self,
         sweeps: usize,
         backup: impl Fn(usize, &FiniteState<P>, &[f64]) -> f64,
-    ) -> Vec<f64> {
+    ) -> (Vec<f64>, usize) {
         let mut values = vec![0.0; self.states.len()];
-        for _ in 0..sweeps {
+        for sweep in 0..sweeps {
             let mut change: f64 = 0.0;
             for (index, state) in self.existing() {
                 if !state.outcomes.is_empty() {
@@ -131,10 +138,10 @@ impl<P> FiniteModel<P> {
                 }
             }
             if change < EXACT {
-                break;
+                return (values, sweep);
             }
         }
-        values
+        (values, sweeps)
     }
 }
 

@@ -15,7 +15,7 @@ fn cell([column, row]: [usize; 2]) -> usize {
 #[test]
 fn exact_values_are_minus_the_lengths_of_the_shortest_ways() {
     let experiment = four_rooms(&["world.four_rooms.slip=0"]);
-    let values = experiment.world.finite().unwrap().optimal_values(1.0);
+    let values = experiment.world.finite().unwrap().optimal_values(1.0).0;
     for (from, steps) in [
         ([8, 8], 0.0),
         // Straight to the goal; through the hallways in the east, the south, the north.
@@ -42,6 +42,23 @@ fn maxq_q_on_the_ways_between_hallways_finds_the_shortest_way() {
         let course = &learned.repeats[0];
         assert!(course.steps_until_always_optimal.is_some(), "{goal}");
     }
+}
+
+/// Where chance decides, all policies are alike and ways are long: no policy is better than
+/// the best, and one whose value is not known counts for nothing.
+#[test]
+fn no_policy_is_better_than_the_best() {
+    let experiment = four_rooms(&["world.four_rooms.slip=0.75"]);
+    let learned = learned(&experiment, &Algorithm::QLearning, 20_000, 2);
+    assert!(learned.optimal_return < -500.0);
+    let mut known = 0;
+    for check in learned.repeats.iter().flat_map(|course| &course.checks) {
+        if let Some(greedy) = check.greedy_return {
+            assert!((greedy - learned.optimal_return).abs() < 1e-3, "{check:?}");
+            known += 1;
+        }
+    }
+    assert!(known > 0);
 }
 
 #[test]

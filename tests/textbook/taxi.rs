@@ -99,7 +99,7 @@ fn the_greedy_policy_is_optimal_from_every_start() {
         let experiment = taxi("taxi", &[&setting]);
         let (hierarchy, skills) = taught(&experiment);
         let finite = experiment.world.finite().unwrap();
-        let exact = finite.optimal_values(1.0);
+        let exact = finite.optimal_values(1.0).0;
         // Neither explores nor learns.
         let mut still = experiment.scenario.learning.clone();
         (still.probability_limit, still.epsilon, still.learning_rate) = (0.0, 0.0, 0.0);
