@@ -21,8 +21,8 @@ use common::{SHORT, output, program, stderr, stdout};
 use maxq_lab::evolution::Origin;
 use maxq_lab::lab::{Event, Keep, RunFolder, read_events};
 use maxq_lab::report::{
-    Arm, Base, Happening, Plan, Reevaluation, Stage, StatusWatch, Study, StudyControls, carry_out,
-    status,
+    Arm, Base, Facts, Happening, Plan, Reevaluation, Stage, StatusWatch, Study, StudyControls,
+    carry_out, status,
 };
 use maxq_lab::scenario::EMBEDDED;
 
@@ -315,6 +315,46 @@ fn a_study_takes_no_folder_of_another_plan_and_no_run_of_another_study() {
         },
     );
     assert!(failed[0].contains("holds another run"), "{failed:?}");
+}
+
+/// An evaluation made by another protocol, or of another tree, is not what the plan asks for.
+#[test]
+fn an_evaluation_of_another_plan_is_refused_until_it_is_removed() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("study");
+    let study = Study::create(plan(&[Base::Evolved]), &folder).unwrap();
+    do_all(&study);
+    let run = study.runs()[0];
+    let path = study.run_folder(&run).join("evaluation.json");
+    let made = fs::read_to_string(&path).unwrap();
+    let expected = Facts::read(&study, &run).unwrap();
+    for (part, other, what) in [
+        (
+            "\"warmup\":1",
+            "\"warmup\":0",
+            "warmup: found 0; allowed: 1",
+        ),
+        ("\"seed\":", "\"seed\":1", "seed: found 1"),
+        (
+            "\"tree\":\"(Root ",
+            "\"tree\":\"(Root Wander ",
+            "tree: found another",
+        ),
+        ("\"bank\":1", "\"bank\":0", "banks: found 1; allowed: 2"),
+    ] {
+        let changed = made.replace(part, other);
+        assert_ne!(changed, made, "{part}");
+        fs::write(&path, changed).unwrap();
+        let error = Facts::read(&study, &run).unwrap_err().to_string();
+        assert!(
+            error.contains(what) && error.contains("evaluation.json"),
+            "{error}"
+        );
+    }
+    fs::remove_file(&path).unwrap();
+    do_all(&study);
+    assert_eq!(fs::read_to_string(&path).unwrap(), made);
+    assert_eq!(Facts::read(&study, &run).unwrap(), expected);
 }
 
 #[test]

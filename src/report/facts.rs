@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::single::{SingleError, check_origin, fresh, summary};
+use super::single::{SingleError, check_evaluation, check_origin, fresh, summary};
 use super::study::{RunId, Study};
-use crate::evolution::{Experiment, GenerationRecord, RankedRecord, read_tree};
+use crate::evolution::{Experiment, GenerationRecord, RankedRecord, TreeError, read_tree};
 use crate::hierarchy::{canonical, without_repeats};
 use crate::lab::{Event, RunError, WorldTask, read_events, with_world};
 use crate::worlds::World;
@@ -82,6 +82,7 @@ impl Facts {
         let (Some(outcome), Some(fresh)) = (summary(&folder)?, fresh(&folder)?) else {
             return Ok(None);
         };
+        check_evaluation(study, run, &outcome, &fresh)?;
         let scenario = study.arm(run).apply(study.scenario(run))?;
         let manifest = check_origin(study, run, &scenario)?;
         let file = folder.join("events.jsonl");
@@ -102,6 +103,10 @@ impl Facts {
             message: String::from("holds no generation"),
         })?;
         let winner = with_world(scenario, OfTree(best))?;
+        let winner = winner.map_err(|error| SingleError::Misfit {
+            path: file.display().to_string(),
+            message: format!("the best hierarchy: {error}"),
+        })?;
         Ok(Some(Self {
             run: *run,
             version: format!("{} ({})", manifest.started.version, manifest.started.commit),
@@ -181,28 +186,22 @@ fn policy_change(before: &GenerationRecord, after: &GenerationRecord) -> f64 {
 struct OfTree<'r>(&'r RankedRecord);
 
 impl WorldTask for OfTree<'_> {
-    type Output = Winner;
+    type Output = Result<Winner, TreeError>;
 
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Winner {
+    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
         let catalogue = experiment.catalogue();
         let depth = experiment.scenario.evolution.maximum_depth;
-        let tree = read_tree(&self.0.tree, catalogue, depth).ok();
-        let composites = tree
-            .iter()
-            .flat_map(|tree| tree.nodes())
-            .filter_map(|node| {
-                let subtask = catalogue.subtask(node.subtask);
-                subtask.is_composite().then(|| subtask.name.to_owned())
-            });
-        Winner {
+        let tree = read_tree(&self.0.tree, catalogue, depth)?;
+        let composites = tree.nodes().iter().filter_map(|node| {
+            let subtask = catalogue.subtask(node.subtask);
+            subtask.is_composite().then(|| subtask.name.to_owned())
+        });
+        Ok(Winner {
             composites: composites.collect(),
-            structure: tree.as_ref().map_or_else(
-                || self.0.tree.clone(),
-                |tree| canonical(&without_repeats(tree, catalogue), catalogue),
-            ),
+            structure: canonical(&without_repeats(&tree, catalogue), catalogue),
             tree: self.0.tree.clone(),
             primitives: self.0.primitives.clone(),
             selectable: self.0.primitives_by_state_type.clone(),
-        }
+        })
     }
 }

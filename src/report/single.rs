@@ -124,7 +124,8 @@ impl Single<'_> {
     /// When it is stopped, or cannot be done.
     pub fn carry_out(&self) -> Result<Fresh, SingleError> {
         let folder = self.study.run_folder(&self.run);
-        if let (Some(_), Some(fresh)) = (summary(&folder)?, fresh(&folder)?) {
+        if let (Some(outcome), Some(fresh)) = (summary(&folder)?, fresh(&folder)?) {
+            check_evaluation(self.study, &self.run, &outcome, &fresh)?;
             return Ok(fresh);
         }
         let scenario = self
@@ -227,7 +228,7 @@ impl Single<'_> {
             trials: plan.trials,
             repeats: plan.repeats,
             banks: plan.banks,
-            seed: self.run.seed.wrapping_add(FRESH_SEED_OFFSET),
+            seed: fresh_seed(&self.run),
         };
         let task = Evaluate {
             tree: &tree,
@@ -279,6 +280,51 @@ pub(super) fn check_origin(
             expected: study.name(run),
         }),
     }
+}
+
+/// Whether an evaluation is the one that the plan asks for, of the winner of the run.
+///
+/// # Errors
+/// When it is another: the plan was changed, or the run went on, after it was made.
+pub(super) fn check_evaluation(
+    study: &Study,
+    run: &RunId,
+    outcome: &Outcome,
+    fresh: &Fresh,
+) -> Result<(), SingleError> {
+    let plan = study.plan.reevaluation;
+    let repeats = &fresh.evaluation.repeats;
+    let trials = repeats.iter().map(|repeat| repeat.steps.len());
+    let banks = repeats.iter().map(|repeat| repeat.bank + 1).max();
+    let winner = outcome.best.as_ref().map(|best| &best.tree);
+    let numbers = [
+        ("warmup", fresh.warmup, plan.warmup),
+        ("repeats", repeats.len(), plan.repeats),
+        ("trials", trials.max().unwrap_or(0), plan.trials),
+        ("banks", banks.unwrap_or(0), plan.banks.min(plan.repeats)),
+    ];
+    let other = numbers
+        .into_iter()
+        .find(|(_, found, allowed)| found != allowed);
+    let message = match other {
+        Some((name, found, allowed)) => format!("{name}: found {found}; allowed: {allowed}"),
+        None if fresh.seed != fresh_seed(run) => {
+            format!("seed: found {}; allowed: {}", fresh.seed, fresh_seed(run))
+        }
+        None if winner != Some(&fresh.evaluation.tree) => {
+            String::from("tree: found another than that of the winner in summary.json")
+        }
+        None => return Ok(()),
+    };
+    Err(SingleError::Misfit {
+        path: study.run_folder(run).join(FRESH).display().to_string(),
+        message: format!("{message}; remove the file to have the evaluation done again"),
+    })
+}
+
+/// The seed of the evaluation of a run's winner.
+fn fresh_seed(run: &RunId) -> u64 {
+    run.seed.wrapping_add(FRESH_SEED_OFFSET)
 }
 
 /// The result of the run in a folder; none before it is over.
