@@ -3,7 +3,8 @@
 //! The arena is divided into cells. For each cell the walls that a robot in it can
 //! touch in one step, that its proximity sensors can reach, and that can stand
 //! between it and each target are listed once; a time step then looks at those few
-//! walls instead of all. The lists are supersets, so no result depends on them.
+//! walls instead of all. The lists are supersets, so no wall is missed; but a ray that hits a listed wall beyond the
+//! range of its sensor draws a number for its noise, so the bits of a run depend on them.
 
 use std::ops::Range;
 
@@ -11,7 +12,8 @@ use nalgebra::{Point2, Vector2};
 
 use super::ArenaModel;
 
-/// Cells along the longer side. More cells give shorter lists and a longer start.
+/// Cells along the longer side. More cells give shorter lists and a longer start. Another
+/// number gives other bits.
 const CELLS: usize = 50;
 
 /// A straight wall.
