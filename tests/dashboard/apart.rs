@@ -86,6 +86,25 @@ fn keys_step_forth_and_back_through_a_trial() {
     assert_eq!(shown(&screen), (trial + 1, 1));
 }
 
+/// Steps of an earlier trial are not taken for steps of this one.
+#[test]
+fn the_steps_of_an_earlier_trial_are_below_its_number() {
+    let mut screen = screen();
+    screen.press("t . . . N . .");
+    let text = screen.text();
+    let steps = text.split("the steps before").nth(1).unwrap();
+    let lines: Vec<_> = steps.lines().skip(1).collect();
+    let has = |line: usize, words: &str| {
+        assert!(
+            lines[line].contains(words),
+            "{words} in line {line} of\n{text}"
+        );
+    };
+    has(0, " 1  type");
+    has(1, " trial 1 ");
+    has(2, " 3  type");
+}
+
 /// A step of the past is shown with the way that led to it, not with what came after.
 #[test]
 fn the_trail_is_that_of_the_step_shown() {

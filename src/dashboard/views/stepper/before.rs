@@ -15,7 +15,7 @@ use crate::lab::specimen::StepTrace;
 ///  step  101  type 1      Wander (600,600)        -0.300  FindBattery ✓
 /// ```
 ///
-/// Subtasks that ended stand behind, with ✓ at their goal and ! elsewhere.
+/// The steps of an earlier trial stand below its number. Subtasks that ended stand behind, with ✓ at their goal and ! elsewhere.
 pub(super) fn lines(
     desk: &Desk,
     shown: &Shown<'_>,
@@ -23,7 +23,17 @@ pub(super) fn lines(
     rows: usize,
 ) -> Vec<Line<'static>> {
     let steps = (back + 1..).map_while(|back| desk.stage.trace(back));
-    steps.take(rows).map(|trace| line(shown, trace)).collect()
+    let (mut trial, mut lines) = (shown.trace.trial, Vec::new());
+    for trace in steps.take(rows) {
+        if trace.trial != trial {
+            trial = trace.trial;
+            let text = format!("trial {trial}");
+            lines.push(Pen::new(shown.look).text(text, Paint::Dim).line());
+        }
+        lines.push(line(shown, trace));
+    }
+    lines.truncate(rows);
+    lines
 }
 
 fn line(shown: &Shown<'_>, trace: &StepTrace) -> Line<'static> {
