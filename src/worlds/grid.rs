@@ -65,7 +65,7 @@ impl Cells {
         inside.then(|| (self.rows - 1 - y as usize) * self.columns + x as usize)
     }
 
-    /// The cells row by row from the lower left, as a [`Sweep`](super::scene::Sweep) has
+    /// The cells row by row from the lower left, as a [`Sweep`] has
     /// them, whose scales ascend.
     pub(super) fn upwards(self) -> impl Iterator<Item = usize> {
         let columns = self.columns;
