@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::files::ReadError;
+use crate::files::{JsonError, ReadError};
 use crate::rules::Problem;
 
 /// Why a scenario cannot be used.
@@ -26,18 +26,12 @@ pub enum ScenarioError {
         source: ReadError,
     },
     /// The text is not JSON of the scenario model.
-    #[error("{file}: line {line}, column {column}, at {place}: {message}")]
+    #[error("{file}: {source}")]
     Syntax {
         /// The file.
         file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// Dotted path of the value.
-        place: String,
-        /// What was found and what was expected.
-        message: String,
+        /// Where, and why not.
+        source: JsonError,
     },
     /// The scenario breaks rules.
     #[error("{file}: {}", list(.problems))]
@@ -55,37 +49,6 @@ pub enum ScenarioError {
         /// What is wrong, and what is allowed.
         message: String,
     },
-}
-
-impl ScenarioError {
-    pub(super) fn syntax(
-        file: &str,
-        error: &serde_path_to_error::Error<serde_json::Error>,
-    ) -> Self {
-        let place = match error.path().to_string().as_str() {
-            // `?` is a key that could not be read.
-            "." | "?" => String::from("the top level"),
-            path => path.to_owned(),
-        };
-        Self::from_json(file, place, error.inner())
-    }
-
-    pub(super) fn trailing(file: &str, error: &serde_json::Error) -> Self {
-        Self::from_json(file, String::from("the end of the scenario"), error)
-    }
-
-    fn from_json(file: &str, place: String, error: &serde_json::Error) -> Self {
-        let (line, column) = (error.line(), error.column());
-        let text = error.to_string();
-        let suffix = format!(" at line {line} column {column}");
-        Self::Syntax {
-            file: file.to_owned(),
-            line,
-            column,
-            place,
-            message: text.strip_suffix(&suffix).unwrap_or(&text).to_owned(),
-        }
-    }
 }
 
 fn list(problems: &[Problem]) -> String {

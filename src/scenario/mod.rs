@@ -10,6 +10,7 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::files::{parse_json, read_text, stated_format};
 use crate::rules::Problem;
 use crate::worlds::WorldModel;
 
@@ -81,11 +82,9 @@ impl Scenario {
     /// As [`Scenario::load`].
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
-        let text = crate::files::read_text(path, MAX_FILE_BYTES).map_err(|source| {
-            ScenarioError::Read {
-                file: file.clone(),
-                source,
-            }
+        let text = read_text(path, MAX_FILE_BYTES).map_err(|source| ScenarioError::Read {
+            file: file.clone(),
+            source,
         })?;
         Self::parse(&text, &file)
     }
@@ -95,19 +94,16 @@ impl Scenario {
     /// # Errors
     /// When the text is not JSON of this model or breaks a rule.
     pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
-        if let Some(format) = crate::files::stated_format(text).filter(|&format| format != FORMAT) {
+        if let Some(format) = stated_format(text).filter(|&format| format != FORMAT) {
             return Err(ScenarioError::Invalid {
                 file: file.to_owned(),
                 problems: vec![Problem::new("format", format, FORMAT)],
             });
         }
-        let mut json = serde_json::Deserializer::from_str(text);
-        let parsed = serde_path_to_error::deserialize::<_, Self>(&mut json)
-            .map_err(|error| ScenarioError::syntax(file, &error))
-            .and_then(|scenario| match json.end() {
-                Ok(()) => Ok(scenario),
-                Err(error) => Err(ScenarioError::trailing(file, &error)),
-            })?;
+        let parsed: Self = parse_json(text).map_err(|source| ScenarioError::Syntax {
+            file: file.to_owned(),
+            source,
+        })?;
         parsed.checked(file)
     }
 
