@@ -4,8 +4,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use rand::RngExt;
+
 use super::scene::{Move, Reading, Scale, Snapshot, Sweep};
 use super::{Probe, StateType, SubtaskId};
+use crate::random::Stream;
 
 /// Radius in cells of an agent that is in one.
 pub(super) const RADIUS: f64 = 0.35;
@@ -124,6 +127,13 @@ impl Cells {
             probes: self.upwards().map(probe).collect(),
         }
     }
+}
+
+/// One of some cells, all alike; `None` of none.
+pub(super) fn any_of(cells: impl Iterator<Item = usize>, rng: &mut Stream) -> Option<usize> {
+    let cells: Vec<_> = cells.collect();
+    let last = cells.len().checked_sub(1)?;
+    Some(cells[rng.random_range(0..=last)])
 }
 
 fn scale(name: &str, count: usize) -> Scale {

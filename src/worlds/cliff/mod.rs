@@ -27,7 +27,7 @@ use rand::RngExt;
 use self::catalogue::{ABOVE, AT_GOAL, AT_START, DOWN, INPUTS, LAST, LEFT, RIGHT};
 pub use self::model::{CliffBegin, CliffModel};
 use super::finite::FiniteModel;
-use super::grid::{Cells, Direction};
+use super::grid::{Cells, Direction, any_of};
 use super::{Catalogue, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::Problem;
@@ -144,12 +144,9 @@ impl World for CliffWorld {
     }
 
     fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<Percept> {
-        let all = 0..self.count();
-        let cells: Vec<_> = all
-            .filter(|cell| !self.is_cliff(*cell) && self.state_type(cell) == state_type)
-            .collect();
-        let last = cells.len().checked_sub(1)?;
-        Some(self.percept(&cells[rng.random_range(0..=last)]))
+        let cells = (0..self.count())
+            .filter(|cell| !self.is_cliff(*cell) && self.state_type(cell) == state_type);
+        any_of(cells, rng).map(|cell| self.percept(&cell))
     }
 
     fn hand_made(&self) -> Option<&'static str> {

@@ -27,7 +27,7 @@ use self::catalogue::{AT_GOAL, DOWN, INPUTS, LEFT, RIGHT};
 use self::house::{CELLS, House};
 pub use self::model::FourRoomsModel;
 use super::finite::FiniteModel;
-use super::grid::Direction;
+use super::grid::{Direction, any_of};
 use super::{Catalogue, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::Problem;
@@ -130,11 +130,8 @@ impl World for FourRoomsWorld {
 
     fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<Percept> {
         let cells = self.house.cells();
-        let cells: Vec<_> = cells
-            .filter(|cell| self.state_type(cell) == state_type)
-            .collect();
-        let last = cells.len().checked_sub(1)?;
-        Some(self.percept(&cells[rng.random_range(0..=last)]))
+        let cells = cells.filter(|cell| self.state_type(cell) == state_type);
+        any_of(cells, rng).map(|cell| self.percept(&cell))
     }
 
     fn hand_made(&self) -> Option<&'static str> {
