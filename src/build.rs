@@ -31,18 +31,22 @@ fn name_commit() {
     println!("cargo::rustc-env=MAXQ_LAB_COMMIT={commit}");
 }
 
-/// The modules of all worlds - the folders in `all` -, and a call of `worlds!` with
+/// The modules of all worlds - the folders in `all` with a `mod.rs` -, and a call of `worlds!` with
 /// them, for `src/worlds/mod.rs`.
 fn worlds(all: &str, out: &Path) -> Result<String, Box<dyn Error>> {
     let (mut modules, mut list) = (String::new(), String::new());
-    for path in entries(all)?.iter().filter(|path| path.is_dir()) {
+    for path in entries(all)? {
         let module = path.join("mod.rs");
+        // A folder without one is what another branch left behind.
+        if !module.is_file() {
+            continue;
+        }
         println!("cargo::rerun-if-changed={}", module.display());
         let source = fs::read_to_string(&module)?;
         let module = seen_from(out, &module)?;
         let summary = source.lines().next().unwrap_or_default();
         let summary = summary.trim_start_matches("//!").trim();
-        let folder = stem(path)?;
+        let folder = stem(&path)?;
         let name = camel_case(folder);
         modules += &format!("#[path = {module:?}]\npub mod {folder};\n");
         list += &format!("    /// {summary}\n    {name}: {folder:?}, {folder}::{name}Model;\n");
