@@ -9,7 +9,7 @@ use super::output::{Done, Failure, counted};
 use super::progress::repeats;
 use super::source::Source;
 use crate::evolution::{Experiment, read_tree};
-use crate::lab::{Protocol, Scored, departures, evaluate, in_words};
+use crate::lab::{Protocol, Scored, departures, evaluate, in_words, with_changes};
 use crate::learning::Gate;
 use crate::worlds::scene::Scenic;
 
@@ -118,20 +118,18 @@ impl Question for Args {
             Some(error) => format!(" +- {error:.digits$} (standard error)"),
             None => String::new(),
         };
-        let changed = report.changed.as_ref();
-        let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
         let unknown = match evaluation.standard_error {
             Some(_) => "",
             None => "; a single repeat has no standard error",
         };
         format!(
-            "{}\n{}{changed}, seed {}: {} of {}, {} before them, {} of primitive subtasks{unknown}\n\
+            "{}\n{}, seed {}: {} of {}, {} before them, {} of primitive subtasks{unknown}\n\
              {:.1}{} time steps a trial\n\
              {:.2}{} return of a trial, the sum of its rewards\n\
              {:.2} % of the trials delivered\n\
              {} control steps, {:.0} a second with the training of the primitive subtasks\n",
             evaluation.tree,
-            report.scenario,
+            with_changes(&report.scenario, report.changed.as_deref()),
             report.seed,
             counted(evaluation.repeats.len() as u64, "repeat"),
             counted(report.trials as u64, "scored trial"),

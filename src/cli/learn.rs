@@ -12,7 +12,7 @@ use super::source::Source;
 use crate::evolution::{Experiment, read_tree};
 use crate::lab::{
     Algorithm, Course, GivenPolicy, LearnError, LearnProtocol, Learned, Mean, ValueGrid,
-    departures, in_words, learn, value_grids,
+    departures, in_words, learn, value_grids, with_changes,
 };
 use crate::learning::Gate;
 use crate::worlds::scene::Scenic;
@@ -186,12 +186,10 @@ impl Question for Args {
     fn describe(report: &Report) -> String {
         let learned = &report.learned;
         let trials: u64 = learned.repeats.iter().map(|course| course.trials).sum();
-        let changed = report.changed.as_ref();
-        let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
         let mut text = format!(
-            "{}{changed}, {}, seed {}: {} of {}, {}\n\
+            "{}, {}, seed {}: {} of {}, {}\n\
              expected return of the optimal policy   {:.4}\n",
-            report.scenario,
+            with_changes(&report.scenario, report.changed.as_deref()),
             report.algorithm,
             report.seed,
             counted(learned.repeats.len() as u64, "repeat"),
@@ -202,18 +200,12 @@ impl Question for Args {
         // Where the policy is given there is none that becomes optimal. Writing to a string
         // cannot fail.
         if !learned.policy_is_given {
-            let ends = |course: &&Course| {
+            let ends = |course: &Course| {
                 let last = course.checks.last();
                 last.is_some_and(|check| check.greedy_return.is_some())
             };
-            let ending = learned.repeats.iter().filter(ends).count();
             let at_the_end = learned.final_greedy_return.map_or_else(
-                || {
-                    format!(
-                        "comes to an end in {ending} of {} only",
-                        counted(learned.repeats.len() as u64, "repeat")
-                    )
-                },
+                || format!("comes to an end {}", only(learned, ends)),
                 |mean| interval(mean, 4),
             );
             let _ = write!(
@@ -283,13 +275,17 @@ fn interval(mean: Mean, digits: usize) -> String {
 }
 
 fn reached(learned: &Learned, mean: Option<Mean>, of: fn(&Course) -> Option<u64>) -> String {
-    let reached = |course: &&Course| of(course).is_some();
-    let count = learned.repeats.iter().filter(reached).count();
-    let all = counted(learned.repeats.len() as u64, "repeat");
     mean.map_or_else(
-        || format!("in {count} of {all} only"),
+        || only(learned, |course| of(course).is_some()),
         |mean| interval(mean, 0),
     )
+}
+
+/// In how many repeats something is the case that is not in all.
+fn only(learned: &Learned, case: impl Fn(&Course) -> bool) -> String {
+    let count = learned.repeats.iter().filter(|course| case(course)).count();
+    let all = counted(learned.repeats.len() as u64, "repeat");
+    format!("in {count} of {all} only")
 }
 
 fn table(rows: &[Vec<Option<f64>>]) -> String {

@@ -66,6 +66,16 @@ pub fn in_words(differences: &[Difference]) -> Option<String> {
     (!told.is_empty()).then(|| told.join(", ") + &more)
 }
 
+/// The name of a scenario and in what it departs from the embedded one of that name, in the
+/// words of [`in_words`].
+#[must_use]
+pub fn with_changes(name: &str, changed: Option<&str>) -> String {
+    match changed {
+        Some(changed) => format!("{name} with {changed}"),
+        None => name.to_owned(),
+    }
+}
+
 fn compare(path: &str, one: Option<&Value>, other: Option<&Value>, found: &mut Vec<Difference>) {
     if one == other {
         return;

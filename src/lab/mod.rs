@@ -30,7 +30,7 @@ mod worlds;
 pub use checkpoint::{Checkpoint, LogPosition};
 pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
-pub use difference::{Difference, departures, differences, in_words};
+pub use difference::{Difference, departures, differences, in_words, with_changes};
 pub use evaluate::{Evaluation, Protocol, Repeat, Scored, evaluate};
 pub use event::{Ending, Event};
 pub use folder::{Keep, RunFolder};

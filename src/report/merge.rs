@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::single::{SingleError, fresh, summary};
+use super::single::{FRESH, SingleError, fresh, summary};
 use super::study::{RunId, Study, StudyError};
 use crate::files::sync_folder;
 use crate::lab::{FolderError, RunFolder};
 
 /// Files of a run that follow from the plan alone.
-const DETERMINED: [&str; 3] = ["events.jsonl", "checkpoint.json", "evaluation.json"];
+const DETERMINED: [&str; 3] = ["events.jsonl", "checkpoint.json", FRESH];
 
 /// Files that belong to a process at work on a run.
 const LEFT_BEHIND: [&str; 2] = ["lock", "pulse.json"];

@@ -209,14 +209,14 @@ impl Single<'_> {
     }
 
     fn evaluate(&self, folder: &Path, scenario: Scenario) -> Result<Fresh, SingleError> {
-        let path = folder.join("evaluation.json");
+        let path = folder.join(FRESH);
         let _locked = RunFolder::open(folder)?;
         // Another process may have done it before the lock was free.
         if let Some(fresh) = fresh(folder)? {
             return Ok(fresh);
         }
         let misfit = |message| SingleError::Misfit {
-            path: folder.join("summary.json").display().to_string(),
+            path: folder.join(SUMMARY).display().to_string(),
             message,
         };
         let best = summary(folder)?.and_then(|outcome| outcome.best);

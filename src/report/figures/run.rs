@@ -7,7 +7,8 @@ use super::primitives::action_values;
 use super::{Chart, Figure, Number, Panel, Series, Sketch};
 use crate::evolution::{Experiment, GenerationRecord, read_tree};
 use crate::lab::{
-    Event, Recording, RunError, SetupError, WorldTask, departures, in_words, shell_word, with_world,
+    Event, Recording, RunError, SetupError, WorldTask, departures, in_words, shell_word,
+    with_changes, with_world,
 };
 use crate::scenario::Scenario;
 use crate::worlds::World;
@@ -101,10 +102,9 @@ impl RunSource {
     pub fn provenance(&self, arguments: &str) -> String {
         let generations = self.records.len();
         let changed = in_words(&departures(&self.scenario));
-        let changed = changed.map_or_else(String::new, |changed| format!(" with {changed}"));
         format!(
-            "Run of {}{changed}, seed {}, {generations} generations, maxq-lab {}: {}; {}",
-            self.scenario.name,
+            "Run of {}, seed {}, {generations} generations, maxq-lab {}: {}; {}",
+            with_changes(&self.scenario.name, changed.as_deref()),
             self.seed,
             self.version,
             self.commands.join("; "),
