@@ -24,13 +24,8 @@ type Sign<'s> = (&'s str, Style);
 /// ┃   ↓          ┃   8.0                the letter of its subtask, and V(root), in its
 /// ┃  8.0                                place a digit from 0, the lowest, to 9
 /// ```
-pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, lattice: Lattice, buffer: &mut Buffer) {
     let (look, scenery) = (&desk.look, desk.scenery());
-    let lattice = scenery.grid.and_then(|grid| Lattice::fitting(area, grid));
-    let Some(lattice) = lattice else {
-        put(buffer, area, (0, 0), "no room", look.style(Paint::Dim));
-        return;
-    };
     let values = scene.cells.and_then(PolicyMap::values);
     let decimals = decimals(values, lattice.inside(0, 0));
     for (column, row) in lattice.cells() {

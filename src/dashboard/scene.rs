@@ -6,6 +6,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::cells::draw_cells;
 use super::desk::Desk;
+use super::lattice::Lattice;
 use super::look::{Canvas, Layer, Look, Paint, put};
 use super::sight::Sight;
 use crate::lab::specimen::PolicyMap;
@@ -48,8 +49,10 @@ impl Scene<'_> {
 /// Draws the world and, if there is one, the agent in it, as large as the area allows.
 pub(super) fn draw_scene(desk: &Desk, scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
     let scenery = desk.scenery();
-    if scenery.grid.is_some() {
-        return draw_cells(desk, scene, area, buffer);
+    // Where cells are too many for the area the world is drawn as one without cells.
+    let lattice = scenery.grid.and_then(|grid| Lattice::fitting(area, grid));
+    if let Some(lattice) = lattice {
+        return draw_cells(desk, scene, lattice, buffer);
     }
     let look = &desk.look;
     let area = in_proportion(area, scenery.extent);

@@ -341,6 +341,7 @@ fn every_frame_of_foraging() {
 fn every_frame_of_worlds_of_cells() {
     every_frame(&cells("taxi"));
     every_frame(&cells("cliff"));
+    every_frame(&cells("four-rooms"));
 }
 
 #[test]

@@ -176,6 +176,19 @@ fn the_cliff_has_room_in_the_overview() {
     }
 }
 
+/// Eleven rows of cells do not fit into the overview of a small terminal: the world is there
+/// nevertheless, and its cells where there is room for them.
+#[test]
+fn a_world_of_many_cells_is_seen_in_a_small_overview() {
+    let rooms = cells("four-rooms");
+    let mut screen = rooms.screen("dark", Unicode, (80, 24));
+    screen.wait(1.0);
+    assert_looks("cells_four_rooms_80x24", &screen);
+    assert!(screen.text().contains('⌂') && screen.text().contains('●'));
+    screen.press("2");
+    assert_looks("cells_four_rooms_arena", &screen);
+}
+
 /// What is not to be had is said with what is.
 #[test]
 fn a_state_that_cannot_be_is_refused() {
