@@ -279,6 +279,22 @@ fn a_run_folder_is_no_scenario_and_it_is_said_what_was_meant() {
 }
 
 #[test]
+fn a_run_folder_of_the_name_of_an_embedded_scenario_does_not_hide_that() {
+    let parent = TempDir::new().unwrap();
+    run_in(&parent.path().join("smoke"), &short(&[]), 1, &threads(2));
+    let said = output(
+        program()
+            .current_dir(parent.path())
+            .args(["check", "smoke"]),
+    );
+    assert!(said.status.success());
+    let mut run = program();
+    run.current_dir(parent.path());
+    run.args(["run", "smoke", "--headless", "--generations", "1"]);
+    assert!(output(&mut run).status.success());
+}
+
+#[test]
 fn force_deletes_nothing_that_is_no_run() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("thesis");

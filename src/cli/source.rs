@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Args;
 
 use super::output::Failure;
-use crate::scenario::Scenario;
+use crate::scenario::{EMBEDDED, Scenario};
 
 /// A scenario with changes.
 #[derive(Clone, Debug, Args)]
@@ -26,7 +26,8 @@ impl Source {
     /// The scenario with its changes.
     pub(super) fn load(&self) -> Result<Scenario, Failure> {
         let name = &self.scenario;
-        if Path::new(name).join("run.json").is_file() {
+        let is_embedded = EMBEDDED.iter().any(|embedded| embedded.name == name);
+        if !is_embedded && Path::new(name).join("run.json").is_file() {
             let message = format!(
                 "{name}: found a run folder; allowed: a scenario file, or the name of an embedded \
                  scenario; 'maxq-lab resume {name}' goes on with the run, 'maxq-lab replay {name}' \
