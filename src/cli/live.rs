@@ -6,31 +6,22 @@ use std::process::{Command, ExitCode, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use clap::ValueEnum;
 use signal_hook::consts::SIGHUP;
 
-use super::output::{self, Done, Failure, Format};
+use super::how::{How, OnHangup};
+use super::output::{self, Done, Failure, Format, counted};
 use super::progress;
-use super::run::{How, describe};
 use super::show::{Outfit, Show};
 use super::signals::{Caught, Ended};
 use crate::dashboard::session::{Exit, Source};
 use crate::dashboard::terminal;
+use crate::hierarchy::{Glyphs, draw};
 use crate::lab::specimen::bench;
-use crate::lab::{Outcome, Run};
+use crate::lab::{Outcome, Run, departures, in_words};
+use crate::scenario::{Scenario, Selection};
 
 /// Longest wait for a terminal to take the last words.
 pub(super) const PATIENCE: Duration = Duration::from_secs(2);
-
-/// What becomes of a run when the line drops.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum OnHangup {
-    /// It goes on without a terminal, to its end.
-    #[default]
-    Detach,
-    /// It is saved and ended.
-    Stop,
-}
 
 /// The keys and looks of a dashboard, if there will be one.
 pub(super) fn outfit(how: &How) -> Result<Option<Outfit>, Failure> {
@@ -165,4 +156,81 @@ fn hand_over(outcome: &Outcome, how: &How) -> Done {
         process.id()
     ));
     Ok(ExitCode::SUCCESS)
+}
+
+/// A result, for people.
+fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
+    let Outcome {
+        generations,
+        control_steps,
+        wall_seconds,
+        ..
+    } = outcome;
+    let ending = match (outcome.converged, outcome.stopped) {
+        (true, _) => "converged after",
+        (_, true) => "stopped after",
+        _ => "reached its limit of",
+    };
+    let mut lines = vec![
+        format!(
+            "{}, seed {}: {ending} {}",
+            outcome.scenario,
+            outcome.seed,
+            counted(*generations, "generation")
+        ),
+        format!(
+            "{control_steps} control steps in all, {wall_seconds:.2} s now, in {}",
+            outcome.run_dir
+        ),
+    ];
+    // A result must not pass for that of the embedded scenario whose name it has.
+    let changed = in_words(&departures(scenario));
+    lines.extend(changed.map(|changed| format!("changed: {changed}")));
+    if let Some(best) = &outcome.best {
+        lines.push(format!(
+            "{} {}: {:.1} time steps a trial, {} composite and {}",
+            first(scenario.evolution.selection),
+            best.id,
+            best.fitness,
+            best.composites,
+            counted(best.primitives.len() as u64, "primitive subtask")
+        ));
+        lines.push(String::new());
+        lines.extend(super::tree::with_tree(
+            scenario,
+            &best.tree,
+            |tree, catalogue| draw(tree, catalogue, Glyphs::of_locale()),
+        )?);
+        lines.push(String::new());
+        for (index, primitives) in best.primitives_by_state_type.iter().enumerate() {
+            lines.push(format!(
+                "state type {}: {}",
+                index + 1,
+                primitives.join(", ")
+            ));
+        }
+        lines.push(format!("\n{}", caution(scenario.evolution.selection)));
+    }
+    Ok(lines.join("\n") + "\n")
+}
+
+/// What the individual of rank 1 is.
+fn first(selection: Selection) -> &'static str {
+    match selection {
+        Selection::Fitness => "best individual",
+        Selection::Random => "individual that chance ranked first,",
+    }
+}
+
+/// What to bear in mind about it.
+fn caution(selection: Selection) -> &'static str {
+    match selection {
+        Selection::Fitness => {
+            "The best of many is also the luckiest; 'maxq-lab evaluate' tells how good its \
+             structure is."
+        }
+        Selection::Random => {
+            "Chance took the place of fitness here: no individual was selected for being good."
+        }
+    }
 }

@@ -10,6 +10,7 @@ mod check;
 mod evaluate;
 mod export;
 mod frame;
+mod how;
 mod learn;
 mod live;
 mod manual;

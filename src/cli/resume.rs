@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use super::how::How;
 use super::live;
 use super::output::{self, Done};
-use super::run::How;
 use super::signals::Caught;
 use crate::lab::{Invocation, RunFolder, resume};
 

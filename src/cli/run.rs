@@ -2,14 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::live::{self, OnHangup};
-use super::output::{Done, Failure, Format, counted};
-use super::show::Show;
+use super::how::How;
+use super::live;
+use super::output::Done;
 use super::signals::Caught;
 use super::source::Source;
-use crate::hierarchy::{Glyphs, draw};
-use crate::lab::{Keep, Outcome, RunOptions, departures, in_words, start};
-use crate::scenario::{Scenario, Selection};
+use crate::lab::start;
 
 /// Evolve hierarchies for a scenario.
 ///
@@ -53,61 +51,6 @@ pub(super) struct Args {
     how: How,
 }
 
-/// How a run is carried out, whatever it is.
-#[derive(Clone, Debug, clap::Args)]
-pub(super) struct How {
-    /// Computing threads; 0 means one for each processor.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
-
-    /// Checkpoints kept in generations/: all, none, or every N-th generation's.
-    #[arg(long, value_name = "all|none|N", default_value = "all")]
-    keep: Keep,
-
-    /// Open no dashboard, although there is a terminal; a bar on standard error shows the
-    /// progress.
-    #[arg(long)]
-    pub(super) headless: bool,
-
-    /// What becomes of the run when the line drops: it goes on without a terminal, or is
-    /// saved and ended. 'maxq-lab watch' and 'maxq-lab resume' find it again.
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) on_hangup: OnHangup,
-
-    /// How to report the result.
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) format: Format,
-
-    #[command(flatten)]
-    pub(super) show: Show,
-}
-
-impl How {
-    /// The library's options.
-    pub(super) fn options(&self, force: bool) -> RunOptions {
-        RunOptions {
-            threads: usize::from(self.threads),
-            keep: self.keep,
-            force,
-        }
-    }
-
-    /// The arguments with which another process goes on with the run as it was, without a
-    /// terminal.
-    pub(super) fn resume_headless(&self) -> Vec<String> {
-        let (threads, keep) = (self.threads.to_string(), self.keep.to_string());
-        let arguments = [
-            "resume",
-            "--headless",
-            "--threads",
-            &threads,
-            "--keep",
-            &keep,
-        ];
-        arguments.map(String::from).to_vec()
-    }
-}
-
 /// Carries out the command.
 pub(super) fn main(args: Args) -> Done {
     let mut scenario = args.source.load()?;
@@ -122,81 +65,4 @@ pub(super) fn main(args: Args) -> Done {
     let outfit = live::outfit(&args.how)?;
     let run = start(scenario, args.seed, &folder, &args.how.options(args.force))?;
     live::follow(run, outfit, signals, &args.how)
-}
-
-/// A result, for people.
-pub(super) fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
-    let Outcome {
-        generations,
-        control_steps,
-        wall_seconds,
-        ..
-    } = outcome;
-    let ending = match (outcome.converged, outcome.stopped) {
-        (true, _) => "converged after",
-        (_, true) => "stopped after",
-        _ => "reached its limit of",
-    };
-    let mut lines = vec![
-        format!(
-            "{}, seed {}: {ending} {}",
-            outcome.scenario,
-            outcome.seed,
-            counted(*generations, "generation")
-        ),
-        format!(
-            "{control_steps} control steps in all, {wall_seconds:.2} s now, in {}",
-            outcome.run_dir
-        ),
-    ];
-    // A result must not pass for that of the embedded scenario whose name it has.
-    let changed = in_words(&departures(scenario));
-    lines.extend(changed.map(|changed| format!("changed: {changed}")));
-    if let Some(best) = &outcome.best {
-        lines.push(format!(
-            "{} {}: {:.1} time steps a trial, {} composite and {}",
-            first(scenario.evolution.selection),
-            best.id,
-            best.fitness,
-            best.composites,
-            counted(best.primitives.len() as u64, "primitive subtask")
-        ));
-        lines.push(String::new());
-        lines.extend(super::tree::with_tree(
-            scenario,
-            &best.tree,
-            |tree, catalogue| draw(tree, catalogue, Glyphs::of_locale()),
-        )?);
-        lines.push(String::new());
-        for (index, primitives) in best.primitives_by_state_type.iter().enumerate() {
-            lines.push(format!(
-                "state type {}: {}",
-                index + 1,
-                primitives.join(", ")
-            ));
-        }
-        lines.push(format!("\n{}", caution(scenario.evolution.selection)));
-    }
-    Ok(lines.join("\n") + "\n")
-}
-
-/// What the individual of rank 1 is.
-fn first(selection: Selection) -> &'static str {
-    match selection {
-        Selection::Fitness => "best individual",
-        Selection::Random => "individual that chance ranked first,",
-    }
-}
-
-/// What to bear in mind about it.
-fn caution(selection: Selection) -> &'static str {
-    match selection {
-        Selection::Fitness => {
-            "The best of many is also the luckiest; 'maxq-lab evaluate' tells how good its \
-             structure is."
-        }
-        Selection::Random => {
-            "Chance took the place of fitness here: no individual was selected for being good."
-        }
-    }
 }

@@ -12,16 +12,14 @@ use super::header;
 use super::hints::useful;
 use super::input::{Effect, Input};
 use super::keys::{Action, Key, Scope};
-use super::look::{Look, Paint, put};
+use super::look::Paint;
 use super::overlay::{self, Overlay};
-use super::panel::panel;
+use super::panel::{SMALLEST, body, panel, too_small};
 use super::steering::{Steered, steer};
-use super::views::{self, View, ViewId, panels};
+use super::view_id::ViewId;
+use super::views::{self, View, panels};
 use crate::lab::Event;
 use crate::lab::specimen::Start;
-
-/// Smallest size, in columns and rows, at which there is something to see.
-pub const SMALLEST: (u16, u16) = (40, 12);
 
 /// The dashboard.
 pub struct App {
@@ -423,32 +421,5 @@ impl App {
             buffer,
         );
         view.draw(&self.desk, inside, buffer);
-    }
-}
-
-/// Between header and hint bar.
-pub(super) fn body(area: Rect) -> Rect {
-    Rect {
-        y: area.y + area.height.min(1),
-        height: area.height.saturating_sub(2),
-        ..area
-    }
-}
-
-/// Says that there is not enough room to see anything.
-pub(super) fn too_small(look: &Look, area: Rect, buffer: &mut Buffer) {
-    let style = look.style(Paint::Notice);
-    let (columns, rows) = SMALLEST;
-    let word = match area.width {
-        0..9 => "small",
-        _ => "too small",
-    };
-    let lines = [
-        String::from(word),
-        format!("{}x{}", area.width, area.height),
-        format!("needs {columns}x{rows}"),
-    ];
-    for (row, line) in lines.iter().enumerate() {
-        put(buffer, area, (0, row as u16), line, style);
     }
 }

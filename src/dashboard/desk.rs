@@ -5,11 +5,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::keys::KeyMap;
-use super::look::Look;
+use super::look::{Look, Paint};
 use super::model::Model;
 use super::pace::Pace;
 use super::stage::{Stage, Subject};
-use super::views::ViewId;
+use super::view_id::ViewId;
 use crate::evolution::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Tree, parse};
 use crate::lab::departures;
@@ -218,6 +218,23 @@ impl Desk {
             None if live.latest().is_none() => Activity::Training,
             _ if self.stepping => Activity::Stepping,
             _ => Activity::Running,
+        }
+    }
+
+    /// Sign, word and paint of what evolution is doing.
+    pub(super) fn activity_mark(&self) -> (&'static str, &'static str, Paint) {
+        let signs = self.look.signs;
+        match self.activity() {
+            Activity::Training => (signs.running, "TRAINING", Paint::Good),
+            Activity::Running => (signs.running, "RUNNING", Paint::Good),
+            Activity::Stepping => (signs.stepping, "STEPPING", Paint::Notice),
+            Activity::Paused => (signs.paused, "PAUSED", Paint::Notice),
+            Activity::Stopping => (signs.stopped, "STOPPING", Paint::Bad),
+            Activity::Stopped if self.mode == Mode::Replay => {
+                (signs.stopped, "UNFINISHED", Paint::Notice)
+            }
+            Activity::Stopped => (signs.stopped, "STOPPED", Paint::Bad),
+            Activity::Finished => (signs.finished, "FINISHED", Paint::Good),
         }
     }
 

@@ -3,11 +3,11 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::desk::{Activity, Desk, Mode};
+use super::desk::{Desk, Mode};
 use super::hints;
 use super::keys::Action;
 use super::look::{Look, Paint, fitted, fitted_parts, one_line, put, width};
-use super::views::ViewId;
+use super::view_id::ViewId;
 
 /// Draws the first line: the run, what it is doing, and the view.
 ///
@@ -20,7 +20,7 @@ pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
         ..area
     };
     let look = &desk.look;
-    let (sign, word, paint) = activity(desk);
+    let (sign, word, paint) = desk.activity_mark();
     let state = format!(" {sign} {word} ");
     let mut column = put(buffer, line, (0, 0), &state, look.style(paint));
     let marks = marks(desk);
@@ -50,23 +50,6 @@ pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
         .max(column);
     for mark in marks {
         start = put(buffer, line, (start, 0), &mark, look.style(Paint::Frozen)) + 1;
-    }
-}
-
-/// Sign, word and paint of what evolution is doing.
-pub(super) fn activity(desk: &Desk) -> (&'static str, &'static str, Paint) {
-    let signs = desk.look.signs;
-    match desk.activity() {
-        Activity::Training => (signs.running, "TRAINING", Paint::Good),
-        Activity::Running => (signs.running, "RUNNING", Paint::Good),
-        Activity::Stepping => (signs.stepping, "STEPPING", Paint::Notice),
-        Activity::Paused => (signs.paused, "PAUSED", Paint::Notice),
-        Activity::Stopping => (signs.stopped, "STOPPING", Paint::Bad),
-        Activity::Stopped if desk.mode == Mode::Replay => {
-            (signs.stopped, "UNFINISHED", Paint::Notice)
-        }
-        Activity::Stopped => (signs.stopped, "STOPPED", Paint::Bad),
-        Activity::Finished => (signs.finished, "FINISHED", Paint::Good),
     }
 }
 

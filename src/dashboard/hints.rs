@@ -2,7 +2,8 @@
 
 use super::desk::{Activity, Desk, Mode, Time};
 use super::keys::Action;
-use super::views::{View, ViewId};
+use super::view_id::ViewId;
+use super::views::View;
 
 /// Actions that lead around the overview.
 const AROUND: &[Action] = &[Action::NextPanel, Action::Open];

@@ -15,10 +15,11 @@
 //! | `desk` | what the person has chosen to look at; every view reads it |
 //! | `stage` | the rollout of the individual that is looked at |
 //! | `keys` | actions, keys, and which key does what: one list for input, hints and help |
-//! | `mouse` | what clicks and the wheel do |
+//! | `mouse`, `clicks` | what the mouse tells; what clicks and the wheel do |
 //! | `hints` | which actions the last line names |
 //! | `look` | themes, signs, lines of text, the canvas that arenas are drawn on |
-//! | `scene`, `cells`, `lattice` | worlds, drawn: in their true proportions, or cell by cell |
+//! | `scene` | worlds, drawn: in their true proportions, or cell by cell |
+//! | `view_id` | the views by name |
 //! | `views` | one file a view; a view in a corner of the overview is a panel |
 //! | `runs` | the table of a study's runs, each of which can be opened |
 //! | `export` | a frame as text, ANSI or SVG |
@@ -29,7 +30,7 @@
 //! that implements `View`.
 
 mod app;
-mod cells;
+mod clicks;
 mod config;
 mod desk;
 mod export;
@@ -37,7 +38,6 @@ mod header;
 mod hints;
 mod input;
 pub mod keys;
-mod lattice;
 pub mod look;
 mod model;
 mod mouse;
@@ -47,12 +47,12 @@ mod panel;
 mod runs;
 mod scene;
 pub mod session;
-mod sight;
 mod stage;
 mod steering;
 mod still;
 pub mod terminal;
-pub mod views;
+mod view_id;
+mod views;
 
 pub use app::App;
 pub use config::{Config, ConfigError};
@@ -64,4 +64,4 @@ pub use mouse::{Gesture, Mouse};
 pub use runs::{RunRow, RunsEffect, RunsNews, RunsTable, Standing, Work};
 pub use stage::{SPEEDS, Stage, Subject};
 pub use still::Still;
-pub use views::ViewId;
+pub use view_id::ViewId;

@@ -7,9 +7,10 @@ use ratatui::widgets::{Clear, Widget};
 use super::desk::Desk;
 use super::input::Effect;
 use super::keys::{Action, KeyMap, Scope};
+use super::look::lines::mark_more;
 use super::look::{Look, Paint, fitted, put, width, wrapped};
 use super::panel::panel;
-use super::views::{ViewId, mark_more};
+use super::view_id::ViewId;
 
 /// What is open over the view.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,10 +1,14 @@
-//! The border around a panel.
+//! The frame around what is shown: header and hint bar, the border of a panel, and what there
+//! is to see where there is no room.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Block, Widget};
 
 use super::look::{Look, Paint, fitted_parts, put, width};
+
+/// Smallest size, in columns and rows, at which there is something to see.
+pub const SMALLEST: (u16, u16) = (40, 12);
 
 /// Draws border, title and caption of a panel, and returns the area inside.
 ///
@@ -53,4 +57,31 @@ pub(super) fn panel(
 /// The area inside the border of a panel.
 pub(super) fn inside(area: Rect) -> Rect {
     Block::bordered().inner(area)
+}
+
+/// Between header and hint bar.
+pub(super) fn body(area: Rect) -> Rect {
+    Rect {
+        y: area.y + area.height.min(1),
+        height: area.height.saturating_sub(2),
+        ..area
+    }
+}
+
+/// Says that there is not enough room to see anything.
+pub(super) fn too_small(look: &Look, area: Rect, buffer: &mut Buffer) {
+    let style = look.style(Paint::Notice);
+    let (columns, rows) = SMALLEST;
+    let word = match area.width {
+        0..9 => "small",
+        _ => "too small",
+    };
+    let lines = [
+        String::from(word),
+        format!("{}x{}", area.width, area.height),
+        format!("needs {columns}x{rows}"),
+    ];
+    for (row, line) in lines.iter().enumerate() {
+        put(buffer, area, (0, row as u16), line, style);
+    }
 }

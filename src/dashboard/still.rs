@@ -2,7 +2,7 @@
 
 use super::app::App;
 use super::input::{Effect, Input};
-use super::views::ViewId;
+use super::view_id::ViewId;
 use crate::lab::specimen::Archive;
 
 /// A dashboard without a terminal, over a run that is on disk. It fetches what the

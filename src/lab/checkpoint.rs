@@ -12,16 +12,13 @@ use serde_json::Serializer;
 use serde_json::ser::{CompactFormatter, Formatter};
 use serde_json::value::RawValue;
 
-use super::checkpoint_error::CheckpointError;
+use super::checkpoint_error::{CHECKPOINT_FORMAT, CheckpointError};
 use super::population_file::{IndividualFile, PrimitiveFile, skills};
 use crate::evolution::{Experiment, State};
 use crate::files::{parse_json, read_text};
 use crate::learning::{Skill, Skills};
 use crate::scenario::Scenario;
 use crate::worlds::World;
-
-/// Version of the checkpoint format.
-pub const CHECKPOINT_FORMAT: u32 = 1;
 
 /// Largest checkpoint that is read, in bytes; a large population of complete
 /// hierarchies takes a tenth of it.

@@ -2,9 +2,11 @@
 
 use thiserror::Error;
 
-use super::checkpoint::CHECKPOINT_FORMAT;
 use crate::files::{JsonError, ReadError};
 use crate::scenario::ScenarioError;
+
+/// Version of the checkpoint format.
+pub const CHECKPOINT_FORMAT: u32 = 1;
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, Error)]

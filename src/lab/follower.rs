@@ -12,9 +12,10 @@ use super::event::Event;
 use super::folder::RunFolder;
 use super::log::{LogError, read_event};
 use super::manifest::Manifest;
+use super::news::{Life, News};
 use super::pulse::{BEAT, Beat, PULSE_FILE};
+use super::recording::Recording;
 use super::run_error::RunError;
-use super::watch::{Life, News, Recording};
 use crate::files::{Stamp, read_bytes};
 
 /// A pulse that stays the same for this long has stopped: more than ten beats, and
@@ -300,4 +301,14 @@ fn is_dead(beat: &Beat) -> bool {
             .is_some_and(|process| test_kill_process(process).err() == Some(Errno::SRCH));
     }
     false
+}
+
+impl Recording {
+    /// Reads the run in a folder. A last event without its end is dropped.
+    ///
+    /// # Errors
+    /// When the folder holds no run, or its log cannot be read.
+    pub fn read(folder: &Path) -> Result<Self, RunError> {
+        Follower::of(folder).read()
+    }
 }

@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use serde::Serialize;
 use thiserror::Error;
 
+use super::algorithm::{Algorithm, GivenPolicy};
 use super::learner::{AnyLearner, Learner};
 use super::mean::{Mean, mean};
 use crate::evolution::{Experiment, Workers};
-use crate::hierarchy::Tree;
 use crate::learning::{Gate, Stopped};
 use crate::random::{Purpose, stream};
 use crate::worlds::World;
@@ -17,28 +17,6 @@ use crate::worlds::finite::{FiniteModel, MAX_SWEEPS, PolicyTable};
 /// Sweeps for the value of a greedy policy, or four times as many as the optimal values took: one
 /// that has not come to an end after as many steps is far from optimal.
 const CHECK_SWEEPS: usize = 300;
-
-/// A learning algorithm.
-#[derive(Clone, Debug)]
-pub enum Algorithm {
-    /// TD(0) on a table (Thesis Algorithm 2.1).
-    Td0(GivenPolicy),
-    /// Q-learning on a table (Thesis Algorithm 2.2).
-    QLearning,
-    /// Q-learning with normalised Gaussian features (Thesis Algorithm 2.3).
-    QLearningRbf,
-    /// MAXQ-Q on a hierarchy (Thesis Algorithm 2.4).
-    MaxqQ(Tree),
-}
-
-/// The policy whose values TD(0) learns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GivenPolicy {
-    /// The optimal policy; of equally good actions all alike.
-    Optimal,
-    /// All actions alike.
-    Random,
-}
 
 /// How learning is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]

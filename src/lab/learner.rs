@@ -1,7 +1,7 @@
 //! Flat learners and hierarchies as one kind of thing: they learn from episodes, and have
 //! a value and a best action for every state.
 
-use super::learn::Algorithm;
+use super::algorithm::Algorithm;
 use crate::evolution::Experiment;
 use crate::learning::{Agent, Episode, Flat, FlatLesson, Gate, Policy, Skills, Stopped};
 use crate::random::Stream;

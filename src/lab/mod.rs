@@ -1,6 +1,7 @@
 //! One run: the evolution thread, its events and commands, the run folder,
 //! checkpoint and resume; the evaluation of single structures; taking individuals apart.
 
+mod algorithm;
 mod checkpoint;
 mod checkpoint_error;
 mod controls;
@@ -15,10 +16,12 @@ mod learner;
 mod log;
 mod manifest;
 mod mean;
+mod news;
 mod outcome;
 mod population_file;
 mod pulse;
 mod recorder;
+mod recording;
 mod run;
 mod run_error;
 pub mod specimen;
@@ -27,6 +30,7 @@ mod watch;
 mod work;
 mod worlds;
 
+pub use algorithm::{Algorithm, GivenPolicy};
 pub use checkpoint::{Checkpoint, LogPosition};
 pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
@@ -36,15 +40,15 @@ pub use event::{Ending, Event};
 pub use folder::{Keep, RunFolder};
 pub use folder_error::{FolderError, Occupied};
 pub use follower::Follower;
-pub use learn::{
-    Algorithm, Course, GivenPolicy, LearnCheck, LearnError, LearnProtocol, Learned, learn,
-};
+pub use learn::{Course, LearnCheck, LearnError, LearnProtocol, Learned, learn};
 pub use log::{LogError, read_events};
 pub use manifest::{Invocation, Manifest, shell_word};
 pub use mean::{Mean, mean};
+pub use news::{Life, News};
 pub use outcome::{BestIndividual, Outcome};
+pub use recording::Recording;
 pub use run::{Run, RunOptions, resume, start};
 pub use run_error::RunError;
 pub use value_grid::{ValueGrid, value_grids};
-pub use watch::{Life, News, Recording, Watch};
+pub use watch::Watch;
 pub use worlds::{SetupError, WorldTask, with_world};

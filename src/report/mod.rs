@@ -7,6 +7,7 @@
 
 mod arm;
 mod claims;
+mod controls;
 mod document;
 mod facts;
 pub mod figures;
@@ -17,7 +18,6 @@ mod numbers;
 mod pace;
 mod plan;
 mod plan_error;
-mod plan_file;
 mod provenance;
 pub mod run_export;
 mod runner;
@@ -33,6 +33,7 @@ mod write;
 
 pub use arm::{Arm, Base};
 pub use claims::{CLAIMS, Claim, Evidence, Scope, Verdict, judge};
+pub use controls::StudyControls;
 pub use facts::{Facts, FreshFacts, Moment, Winner};
 pub use findings::{Comparison, Counted, Findings, Judged, Kind, Summary};
 pub use merge::{MergeError, merge};
@@ -41,7 +42,7 @@ pub use pace::Pace;
 pub use plan::{MAX_PLAN_BYTES, PLAN_FORMAT, Plan, Reevaluation};
 pub use plan_error::PlanError;
 pub use provenance::Provenance;
-pub use runner::{Happening, StudyControls, carry_out};
+pub use runner::{Happening, carry_out};
 pub use single::{Fresh, Single, SingleError};
 pub use status::{RunStatus, Stage, StatusWatch, course, status};
 pub use study::{RunId, Study, StudyError};

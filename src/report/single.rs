@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::arm::{Arm, ArmError, Base};
-use super::runner::StudyControls;
+use super::controls::StudyControls;
 use super::study::{RunId, Study};
 use crate::evolution::{Evolution, Experiment, TreeError, Workers, read_tree};
 use crate::files::{ReadError, parse_json, read_text, write_atomically};

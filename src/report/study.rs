@@ -7,13 +7,10 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::arm::Arm;
-use super::plan::Plan;
+use super::plan::{PLAN_FILE, Plan};
 use super::plan_error::PlanError;
 use crate::files::{read_text, write_atomically};
 use crate::scenario::Scenario;
-
-/// The plan in the folder of a study.
-pub(super) const PLAN_FILE: &str = "study.json";
 
 /// A study: a plan and the folder of its runs.
 ///

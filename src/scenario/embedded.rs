@@ -9,12 +9,23 @@ pub struct Embedded {
     pub json: &'static str,
 }
 
-/// All embedded scenarios: the files of `scenarios/`, found by `src/build.rs`.
-pub const EMBEDDED: &[Embedded] = include!(concat!(env!("OUT_DIR"), "/scenarios.rs"));
+/// The files of a folder by name, built into the program.
+macro_rules! embedded {
+    ($folder:literal: $($name:literal),+ $(,)?) => {
+        &[$(Embedded {
+            name: $name,
+            json: include_str!(concat!("../../", $folder, "/", $name, ".json")),
+        }),+]
+    };
+}
+
+/// All embedded scenarios: the files of `scenarios/`.
+pub const EMBEDDED: &[Embedded] = embedded!["scenarios": "cliff", "environment-1", "environment-2", "environment-3", "four-rooms", "smoke", "taxi", "taxi-fickle"];
 
 /// All embedded plans of studies, the files of `scenarios/studies/`; the names of their
 /// scenarios are those of embedded ones.
-pub const EMBEDDED_PLANS: &[Embedded] = include!(concat!(env!("OUT_DIR"), "/plans.rs"));
+pub const EMBEDDED_PLANS: &[Embedded] =
+    embedded!["scenarios/studies": "evolving-taxi", "mutation", "thesis"];
 
 /// The names of the embedded scenarios, for messages.
 pub(super) fn names() -> String {

@@ -331,6 +331,23 @@ impl Catalogue {
         self.ids().filter(|&id| !self.subtask(id).is_composite())
     }
 
+    /// One capital letter for each primitive subtask: the first of its capitals, or else of
+    /// its letters, that no other has.
+    #[must_use]
+    pub fn letters(&self) -> Vec<char> {
+        let mut letters: Vec<char> = Vec::new();
+        for primitive in self.primitives() {
+            let name = self.subtask(primitive).name;
+            let capitals = name.chars().filter(char::is_ascii_uppercase);
+            let others = name.chars().map(|c| c.to_ascii_uppercase());
+            let free = capitals
+                .chain(others)
+                .find(|letter| !letters.contains(letter));
+            letters.push(free.unwrap_or('?'));
+        }
+        letters
+    }
+
     /// The non-terminal state types in order.
     pub fn types(&self) -> impl Iterator<Item = StateType> + '_ {
         (0..self.state_types.len()).map(|index| StateType(index as u8))

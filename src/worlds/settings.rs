@@ -36,7 +36,7 @@ pub trait Visitor {
 }
 
 /// The sum of the worlds: the type of their settings, and the one place that tells one
-/// from another. Called once, with all that `src/build.rs` has found.
+/// from another. Called once, in `worlds/mod.rs`.
 macro_rules! worlds {
     ($($(#[$doc:meta])* $name:ident: $folder:literal, $model:path;)+) => {
         /// The world of a scenario: its name, which is that of its folder, and its settings.

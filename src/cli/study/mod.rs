@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 
-use super::live::OnHangup;
+use super::how::OnHangup;
 use super::output::{Done, Failure};
 use super::show::Show;
 use crate::lab::Keep;

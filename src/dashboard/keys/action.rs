@@ -1,6 +1,6 @@
 //! What keys can do: the one list that input, hint bars and the help overlay read.
 
-use crate::dashboard::views::ViewId;
+use crate::dashboard::view_id::ViewId;
 
 /// Where a key does something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

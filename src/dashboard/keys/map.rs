@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::action::{Action, Scope};
 use super::key::{Key, KeyError};
 use crate::dashboard::look::{Signs, width};
-use crate::dashboard::views::ViewId;
+use crate::dashboard::view_id::ViewId;
 
 /// Which key does what.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 
 mod canvas;
 mod chart;
+pub(in crate::dashboard) mod lines;
 mod paint;
 mod signs;
 mod spark;

@@ -3,17 +3,16 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::RunsTable;
 use super::columns::{Column, Placed, place};
 use super::row::{RunRow, Standing};
+use super::table::RunsTable;
 use super::work::question;
-use crate::dashboard::app::{SMALLEST, body, too_small};
 use crate::dashboard::header::{last_line, put_hints, put_message};
 use crate::dashboard::hints::ALWAYS;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, one_line, put, sparkline, width};
 use crate::dashboard::overlay::{Line, line, plain, window};
-use crate::dashboard::panel::panel;
+use crate::dashboard::panel::{SMALLEST, body, panel, too_small};
 
 /// Actions of the hint bar, most useful first.
 const HINTS: &[Action] = &[
@@ -114,7 +113,10 @@ impl RunsTable {
         let column = put(buffer, area, (0, 0), &state, look.style(paint));
         let (name, folder) = (one_line(&self.name), one_line(&self.folder));
         let text = format!(" Study {name} {} {folder}", look.signs.separator);
-        let left = self.work.and_then(super::Work::words).unwrap_or_default();
+        let left = self
+            .work
+            .and_then(super::work::Work::words)
+            .unwrap_or_default();
         let right = width(&left) + usize::from(!left.is_empty());
         let room = usize::from(area.width.saturating_sub(column)).saturating_sub(right);
         let text = fitted(&text, room, look.signs);

@@ -3,11 +3,25 @@
 
 use std::time::Duration;
 
-use super::RunsEffect;
 use super::row::RunRow;
 use crate::dashboard::keys::{Action, Key, KeyMap, Scope};
 use crate::dashboard::look::Paint;
 use crate::dashboard::overlay::{Line, plain};
+
+/// Something to be done by whoever drives the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunsEffect {
+    /// Open the run of this row, by its place in the rows that were told.
+    Open(usize),
+    /// Leave; work of this program on the runs is to be saved and stopped.
+    Leave,
+    /// Leave, and go on with the work on the runs.
+    Detach,
+    /// Put the program into the background of its shell.
+    Suspend,
+    /// Forget what is on the terminal and draw everything again.
+    Redraw,
+}
 
 /// What is new of the runs.
 #[derive(Clone, Debug, PartialEq)]

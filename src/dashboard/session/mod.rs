@@ -5,6 +5,7 @@
 //! they are pressed. A frame is drawn when something has changed and the terminal has taken
 //! the last one.
 
+mod exit;
 mod loader;
 mod runs;
 mod save;
@@ -18,6 +19,7 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, after};
 use crossterm::event::Event as Typed;
 
+pub use exit::Exit;
 pub use runs::{RunsExit, RunsSession};
 pub use source::{Live, Source};
 
@@ -38,23 +40,6 @@ const NEWS: Duration = Duration::from_millis(200);
 
 /// Shortest time between two frames: a key that repeats draws no more often.
 const GAP: Duration = Duration::from_millis(25);
-
-/// Why a session is over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Exit {
-    /// The person has left.
-    Left,
-    /// The person has left, and the run is to go on.
-    Detached,
-    /// The line dropped: the terminal is gone.
-    HungUp,
-    /// A signal asked the program to end.
-    Signal(i32),
-    /// A thread has panicked, and the terminal was given back.
-    Panicked,
-    /// The run has failed.
-    Failed,
-}
 
 /// A dashboard on a terminal.
 pub struct Session<'s> {

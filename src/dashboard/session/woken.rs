@@ -7,7 +7,7 @@ use crossbeam_channel::{Receiver, select};
 use crossterm::event::Event as Typed;
 use signal_hook::consts::SIGHUP;
 
-use super::Exit;
+use super::exit::Exit;
 use crate::dashboard::terminal::{Job, Terminal};
 
 /// What a session was woken by; `N` is what else it hears.

@@ -3,7 +3,8 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::{View, case, pace};
+use super::shared::{case, pace};
+use super::view::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Look, Paint, fitted, put, width, wrapped};

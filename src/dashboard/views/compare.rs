@@ -7,11 +7,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::View;
-use super::lines::{Pen, draw_lines, last_start, percent};
+use super::view::View;
 use crate::dashboard::desk::{Chosen, Desk};
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
+use crate::dashboard::look::lines::{Pen, draw_lines, last_start, percent};
 use crate::dashboard::look::{Paint, fitted, put, width, wrapped};
 use crate::evolution::RankedRecord;
 use crate::hierarchy::{Tree, draw, structural_difference, to_dot};

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::{THROUGH_TIME, View, by_chance, nothing_yet, over_generations};
+use super::shared::{THROUGH_TIME, by_chance, nothing_yet, over_generations};
+use super::view::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Paint, put, width};

@@ -3,10 +3,12 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::{View, ViewId, policy};
+use super::policy;
+use super::view::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::width;
+use crate::dashboard::view_id::ViewId;
 
 /// Everything at a glance: the panels, as many as there is room for.
 pub(super) struct Overview;

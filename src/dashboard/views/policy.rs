@@ -7,10 +7,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::lines::percent;
-use super::{THROUGH_TIME, View, letters, nothing_yet, over_generations};
+use super::shared::{THROUGH_TIME, nothing_yet, over_generations};
+use super::view::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
+use crate::dashboard::look::lines::percent;
 use crate::dashboard::look::{
     Chart, Curve, Paint, fitted, one_line, put, shortened, sparkline, width,
 };
@@ -221,7 +222,7 @@ fn label(desk: &Desk, name: &str, share: f64, room: usize) -> String {
 
 fn chart(desk: &Desk, index: usize) -> Chart {
     let catalogue = desk.catalogue();
-    let (records, letters) = (desk.model().generations(), letters(catalogue));
+    let (records, letters) = (desk.model().generations(), catalogue.letters());
     let curves = catalogue
         .primitives()
         .enumerate()

@@ -8,13 +8,14 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use ratatui::text::Line;
 
-use super::lines::{Pen, draw_lines, number, percent};
-use super::{View, letters, nobody};
-use crate::dashboard::cells::share;
+use super::shared::nobody;
+use super::view::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
+use crate::dashboard::look::lines::{Pen, draw_lines, number, percent};
 use crate::dashboard::look::{Canvas, Layer, Paint};
+use crate::dashboard::scene::share;
 use crate::dashboard::scene::{Scene, draw_mark, draw_scene, in_proportion};
 use crate::dashboard::stage::Subject;
 use crate::lab::specimen::{MapView, PolicyCell, PolicyMap};
@@ -76,7 +77,12 @@ impl Map {
         let mut primitives = desk.catalogue().primitives();
         let place = primitives.position(|primitive| primitive == cell.primitive);
         let place = place.unwrap_or(0);
-        let letter = letters(desk.catalogue()).get(place).copied().unwrap_or('?');
+        let letter = desk
+            .catalogue()
+            .letters()
+            .get(place)
+            .copied()
+            .unwrap_or('?');
         let letter = match cell.probability >= CLEAR {
             true => letter,
             false => letter.to_ascii_lowercase(),
@@ -158,7 +164,7 @@ fn with_keys(desk: &Desk, text: &str, keys: &str) -> Line<'static> {
 fn policy_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
     let catalogue = desk.catalogue();
     let free = map.cells.iter().flatten().count().max(1);
-    let signs = letters(catalogue).into_iter().zip(catalogue.primitives());
+    let signs = catalogue.letters().into_iter().zip(catalogue.primitives());
     let mut lines: Vec<_> = signs
         .enumerate()
         .map(|(place, (letter, primitive))| {

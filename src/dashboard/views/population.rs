@@ -5,7 +5,8 @@ use std::fmt::Write;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use super::{View, by_chance, nothing_yet, origin};
+use super::shared::{by_chance, nothing_yet, origin};
+use super::view::View;
 use crate::dashboard::desk::{Chosen, Desk};
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;

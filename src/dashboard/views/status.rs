@@ -5,9 +5,9 @@ use std::time::Duration;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::{View, by_chance};
+use super::shared::by_chance;
+use super::view::View;
 use crate::dashboard::desk::{Desk, Mode};
-use crate::dashboard::header::activity;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put, width};
 use crate::lab::Ending;
@@ -74,7 +74,7 @@ type Fact = (&'static str, String, Paint);
 
 fn facts(desk: &Desk, room: usize) -> Vec<Fact> {
     let scenario = desk.scenario();
-    let (sign, word, paint) = activity(desk);
+    let (sign, word, paint) = desk.activity_mark();
     let mut facts = vec![("evolution", format!("{sign} {word}"), paint)];
     facts.extend(progress(desk, room));
     let saved = match desk.live().checkpoint() {

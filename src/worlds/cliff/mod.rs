@@ -28,9 +28,9 @@ use self::catalogue::{ABOVE, AT_GOAL, AT_START, DOWN, INPUTS, LAST, LEFT, RIGHT}
 pub use self::model::{CliffBegin, CliffModel};
 use super::finite::FiniteModel;
 use super::grid::{Cells, Direction, any_of};
-use super::{Catalogue, StateType, SubtaskId, World};
+use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
-use crate::rules::Problem;
+use crate::rules::{Check, Problem};
 /// What the agent perceives: the number of its cell, and where this is in [0, 1] from the
 /// lower left.
 pub type Percept = [f32; INPUTS];
@@ -101,6 +101,22 @@ impl CliffWorld {
             true => (self.start(), self.model.fall_reward),
             false => (to, self.model.step_reward),
         }
+    }
+}
+
+impl Settings for CliffModel {
+    type World = CliffWorld;
+
+    fn check(&self, check: &mut Check) {
+        check.range("width", self.width, 3..=64);
+        check.range("height", self.height, 2..=64);
+        check.reward("step_reward", self.step_reward);
+        check.reward("fall_reward", self.fall_reward);
+        check.range("rbf_width_cells", self.rbf_width_cells, 0.1..=10.0);
+    }
+
+    fn build(&self) -> Result<CliffWorld, Problem> {
+        CliffWorld::new(self)
     }
 }
 

@@ -3,10 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::CliffWorld;
-use crate::rules::{Check, Problem};
-use crate::worlds::Settings;
-
 /// Columns of the cliff walk, Thesis Figure 2.3.
 const WIDTH: usize = 12;
 /// Rows of the cliff walk, Thesis Figure 2.3.
@@ -49,22 +45,6 @@ impl Default for CliffModel {
             begin: CliffBegin::default(),
             rbf_width_cells: RBF_WIDTH_CELLS,
         }
-    }
-}
-
-impl Settings for CliffModel {
-    type World = CliffWorld;
-
-    fn check(&self, check: &mut Check) {
-        check.range("width", self.width, 3..=64);
-        check.range("height", self.height, 2..=64);
-        check.reward("step_reward", self.step_reward);
-        check.reward("fall_reward", self.fall_reward);
-        check.range("rbf_width_cells", self.rbf_width_cells, 0.1..=10.0);
-    }
-
-    fn build(&self) -> Result<CliffWorld, Problem> {
-        CliffWorld::new(self)
     }
 }
 

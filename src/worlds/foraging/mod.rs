@@ -59,9 +59,9 @@ use arena::Reach;
 use motion::{Arc, slide};
 use sensors::{Sensors, Sighting};
 
-use super::{Catalogue, Probe, StateType, SubtaskId, TrainingModel, World};
+use super::{Catalogue, Probe, Settings, StateType, SubtaskId, TrainingModel, World};
 use crate::random::{Purpose, Stream, stream};
-use crate::rules::Problem;
+use crate::rules::{Check, Problem};
 
 /// Draws after which a search for a pose gives up. In a usable arena a search takes
 /// a handful of draws.
@@ -334,6 +334,22 @@ fn primitives(model: &ForagingModel) -> [Primitive; 5] {
         target(&p.approach_nest, &t.approach_nest),
         target(&p.turn, &t.turn),
     ]
+}
+
+impl Settings for ForagingModel {
+    type World = ForagingWorld;
+
+    fn check(&self, check: &mut Check) {
+        rules::rules(check, self);
+    }
+
+    fn build(&self) -> Result<ForagingWorld, Problem> {
+        ForagingWorld::new(self)
+    }
+
+    fn trains_primitives(&self) -> bool {
+        true
+    }
 }
 
 impl World for ForagingWorld {

@@ -3,9 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ForagingWorld, defaults as d, rules};
-use crate::rules::{Check, Problem};
-use crate::worlds::{Exploration, Settings, TrainingModel};
+use super::defaults as d;
+use crate::worlds::{Exploration, TrainingModel};
 
 /// A robot finds a battery, captures it and brings it to the nest (Thesis 4.2).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -31,22 +30,6 @@ pub struct ForagingModel {
     /// Length of a time step in seconds.
     #[serde(default = "time_step")]
     pub time_step_s: f64,
-}
-
-impl Settings for ForagingModel {
-    type World = ForagingWorld;
-
-    fn check(&self, check: &mut Check) {
-        rules::check(check, self);
-    }
-
-    fn build(&self) -> Result<ForagingWorld, Problem> {
-        ForagingWorld::new(self)
-    }
-
-    fn trains_primitives(&self) -> bool {
-        true
-    }
 }
 
 fn time_step() -> f64 {

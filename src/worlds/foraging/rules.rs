@@ -16,7 +16,7 @@ const MAX_SLITS: usize = 200;
 const MAX_FEATURES: usize = 1 << 14;
 
 /// Checks every rule.
-pub(super) fn check(check: &mut Check, model: &ForagingModel) {
+pub(super) fn rules(check: &mut Check, model: &ForagingModel) {
     check.within("arena", |c| arena(c, &model.arena, model.robot.radius_mm));
     check.within("robot", |c| robot(c, &model.robot));
     check.within("sensors", |c| sensors(c, &model.sensors));

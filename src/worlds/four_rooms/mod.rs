@@ -28,9 +28,9 @@ use self::house::{CELLS, House};
 pub use self::model::FourRoomsModel;
 use super::finite::FiniteModel;
 use super::grid::{Direction, any_of};
-use super::{Catalogue, StateType, SubtaskId, World};
+use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
-use crate::rules::Problem;
+use crate::rules::{Check, Problem};
 
 /// What the agent perceives: the number of its cell, and nothing else.
 pub type Percept = [f32; INPUTS];
@@ -82,6 +82,23 @@ fn direction(primitive: SubtaskId) -> Direction {
         RIGHT => Direction::Right,
         LEFT => Direction::Left,
         _ => Direction::Up,
+    }
+}
+
+impl Settings for FourRoomsModel {
+    type World = FourRoomsWorld;
+
+    fn check(&self, check: &mut Check) {
+        if let Err(problem) = House::new().goal(self.goal_cell) {
+            check.add(problem);
+        }
+        check.range("slip", self.slip, 0.0..=1.0);
+        check.reward("step_reward", self.step_reward);
+        check.reward("goal_reward", self.goal_reward);
+    }
+
+    fn build(&self) -> Result<FourRoomsWorld, Problem> {
+        FourRoomsWorld::new(self)
     }
 }
 

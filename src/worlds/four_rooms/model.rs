@@ -3,11 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::FourRoomsWorld;
-use super::house::House;
-use crate::rules::{Check, Problem};
-use crate::worlds::Settings;
-
 /// Probability of a slip, Sutton, Precup and Singh 1999, section 3.
 const SLIP: f64 = 1.0 / 3.0;
 /// A cell of the south-eastern room that is no subtask's goal but the last one's.
@@ -38,22 +33,5 @@ impl Default for FourRoomsModel {
             step_reward: STEP_REWARD,
             goal_reward: STEP_REWARD,
         }
-    }
-}
-
-impl Settings for FourRoomsModel {
-    type World = FourRoomsWorld;
-
-    fn check(&self, check: &mut Check) {
-        if let Err(problem) = House::new().goal(self.goal_cell) {
-            check.add(problem);
-        }
-        check.range("slip", self.slip, 0.0..=1.0);
-        check.reward("step_reward", self.step_reward);
-        check.reward("goal_reward", self.goal_reward);
-    }
-
-    fn build(&self) -> Result<FourRoomsWorld, Problem> {
-        FourRoomsWorld::new(self)
     }
 }

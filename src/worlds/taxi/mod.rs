@@ -36,9 +36,9 @@ use self::catalogue::{
 use self::city::{City, Direction};
 pub use self::model::TaxiModel;
 use super::finite::FiniteModel;
-use super::{Catalogue, StateType, SubtaskId, World};
+use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
-use crate::rules::Problem;
+use crate::rules::{Check, Problem};
 
 /// States drawn before none counts as to be had.
 const MAX_DRAWS: usize = 10_000;
@@ -207,6 +207,25 @@ fn direction(primitive: SubtaskId) -> Direction {
         EAST => Direction::East,
         WEST => Direction::West,
         _ => Direction::North,
+    }
+}
+
+impl Settings for TaxiModel {
+    type World = TaxiWorld;
+
+    fn check(&self, check: &mut Check) {
+        if let Err(problem) = City::read(&self.map) {
+            check.add(problem);
+        }
+        check.range("slip", self.slip, 0.0..=1.0);
+        check.range("change_of_mind", self.change_of_mind, 0.0..=1.0);
+        check.reward("step_reward", self.step_reward);
+        check.reward("delivery_reward", self.delivery_reward);
+        check.reward("illegal_reward", self.illegal_reward);
+    }
+
+    fn build(&self) -> Result<TaxiWorld, Problem> {
+        TaxiWorld::new(self)
     }
 }
 

@@ -3,11 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::TaxiWorld;
-use super::city::City;
-use crate::rules::{Check, Problem};
-use crate::worlds::Settings;
-
 /// The taxi's city, Thesis Figure 2.6 (Dietterich 2000, Figure 1).
 pub(super) const MAP: [&str; 5] = [
     "R: | : :G",
@@ -59,24 +54,5 @@ impl Default for TaxiModel {
             illegal_reward: ILLEGAL_REWARD,
             state_abstraction: true,
         }
-    }
-}
-
-impl Settings for TaxiModel {
-    type World = TaxiWorld;
-
-    fn check(&self, check: &mut Check) {
-        if let Err(problem) = City::read(&self.map) {
-            check.add(problem);
-        }
-        check.range("slip", self.slip, 0.0..=1.0);
-        check.range("change_of_mind", self.change_of_mind, 0.0..=1.0);
-        check.reward("step_reward", self.step_reward);
-        check.reward("delivery_reward", self.delivery_reward);
-        check.reward("illegal_reward", self.illegal_reward);
-    }
-
-    fn build(&self) -> Result<TaxiWorld, Problem> {
-        TaxiWorld::new(self)
     }
 }

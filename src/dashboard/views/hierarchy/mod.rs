@@ -6,11 +6,12 @@ mod table;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use super::lines::{last_start, mark_more};
-use super::{View, nothing_yet, pace};
+use super::shared::{nothing_yet, pace};
+use super::view::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
+use crate::dashboard::look::lines::{last_start, mark_more};
 use crate::dashboard::look::{Paint, fitted, one_line, put};
 use crate::dashboard::mouse::{Clicked, line_at};
 use crate::hierarchy::{Tree, to_dot};

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use crate::dashboard::desk::Desk;
 use crate::dashboard::look::{Paint, one_line, put, wrapped};
-use crate::dashboard::views::origin;
+use crate::dashboard::views::shared::origin;
 use crate::evolution::{Origin, RankedRecord};
 use crate::hierarchy::Tree;
 use crate::worlds::{Kind, StateTypes, Subtask};

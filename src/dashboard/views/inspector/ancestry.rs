@@ -5,8 +5,8 @@ use std::fmt::Write;
 use ratatui::text::Line;
 
 use crate::dashboard::desk::Desk;
+use crate::dashboard::look::lines::Pen;
 use crate::dashboard::look::{Paint, one_line, wrapped};
-use crate::dashboard::views::lines::Pen;
 use crate::evolution::Origin;
 use crate::lab::specimen::{Ancestor, Lineage};
 

@@ -3,10 +3,9 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::values::largest;
 use crate::dashboard::desk::Desk;
+use crate::dashboard::look::lines::{TINY, number};
 use crate::dashboard::look::{Canvas, Layer, Paint, put, shortened, width, wrapped};
-use crate::dashboard::views::lines::{TINY, number};
 use crate::lab::specimen::{Profile, Quantity};
 use crate::worlds::scene::Scale;
 
@@ -311,4 +310,14 @@ fn sheet(
             column = put(buffer, area, at, &text, look.style(paint));
         }
     }
+}
+
+/// The curve that is highest at a place, the first of equals.
+pub(super) fn largest(profile: &Profile, place: usize) -> Option<usize> {
+    let values = profile.curves.iter().map(|curve| curve.values.get(place));
+    let best = values
+        .enumerate()
+        .filter_map(|(index, value)| Some((index, *value?)));
+    best.reduce(|best, next| if next.1 > best.1 { next } else { best })
+        .map(|(index, _)| index)
 }

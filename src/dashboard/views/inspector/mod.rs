@@ -9,11 +9,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Position, Rect};
 use ratatui::text::Line;
 
-use super::lines::{Pen, draw_lines, last_start, number};
-use super::{View, nobody};
+use super::shared::nobody;
+use super::view::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
+use crate::dashboard::look::lines::{Pen, draw_lines, last_start, number};
 use crate::dashboard::look::{Paint, put, width};
 use crate::dashboard::mouse::{Clicked, line_at};
 use crate::dashboard::stage::Subject;

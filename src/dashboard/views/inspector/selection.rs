@@ -5,8 +5,8 @@ use std::fmt::Write;
 use ratatui::text::Line;
 
 use crate::dashboard::desk::Desk;
+use crate::dashboard::look::lines::{Pen, percent};
 use crate::dashboard::look::{Paint, shortened, wrapped};
-use crate::dashboard::views::lines::{Pen, percent};
 use crate::learning::SelectionProbabilities;
 
 /// Least share that is listed.

@@ -6,11 +6,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::chart;
+use super::chart::{self, largest};
 use crate::dashboard::desk::Desk;
 use crate::dashboard::keys::Action;
+use crate::dashboard::look::lines::{Pen, decimals, draw_lines, fixed};
 use crate::dashboard::look::{Paint, put, shortened, wrapped};
-use crate::dashboard::views::lines::{Pen, decimals, draw_lines, fixed};
 use crate::lab::specimen::{Profile, Quantity};
 use crate::worlds::scene::Scale;
 
@@ -166,16 +166,6 @@ fn table(desk: &Desk, profile: &Profile, labels: &[String], columns: usize) -> V
         pen.line()
     });
     std::iter::once(head.line()).chain(rows).collect()
-}
-
-/// The curve that is highest at a place, the first of equals.
-pub(super) fn largest(profile: &Profile, place: usize) -> Option<usize> {
-    let values = profile.curves.iter().map(|curve| curve.values.get(place));
-    let best = values
-        .enumerate()
-        .filter_map(|(index, value)| Some((index, *value?)));
-    best.reduce(|best, next| if next.1 > best.1 { next } else { best })
-        .map(|(index, _)| index)
 }
 
 /// All profiles as a table.

@@ -5,7 +5,7 @@ use ratatui::text::Line;
 use super::Shown;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::look::Paint;
-use crate::dashboard::views::lines::{Pen, number};
+use crate::dashboard::look::lines::{Pen, number};
 use crate::lab::specimen::StepTrace;
 
 /// Lines of the recorded steps before the one that is `back` steps back, as many as

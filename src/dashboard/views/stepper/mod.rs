@@ -10,11 +10,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::lines::{Pen, draw_lines, last_start};
-use super::{View, nobody, pace};
+use super::shared::{nobody, pace};
+use super::view::View;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::input::Effect;
 use crate::dashboard::keys::Action;
+use crate::dashboard::look::lines::{Pen, draw_lines, last_start};
 use crate::dashboard::look::{Look, Paint, fitted, put};
 use crate::dashboard::scene::{Scene, draw_scene};
 use crate::hierarchy::{Tree, to_dot};

@@ -4,7 +4,7 @@ use ratatui::text::Line;
 
 use super::{Detail, Shown};
 use crate::dashboard::look::Paint;
-use crate::dashboard::views::lines::{Pen, TINY, is_tiny, number, told_apart};
+use crate::dashboard::look::lines::{Pen, TINY, is_tiny, number, told_apart};
 use crate::learning::{Change, Lesson, Update};
 
 /// Reward, terminations and updates.

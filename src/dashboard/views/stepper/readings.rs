@@ -5,8 +5,8 @@ use ratatui::text::Line;
 use super::Shown;
 use crate::dashboard::desk::Desk;
 use crate::dashboard::look::Paint;
-use crate::dashboard::views::case;
-use crate::dashboard::views::lines::Pen;
+use crate::dashboard::look::lines::Pen;
+use crate::dashboard::views::shared::case;
 
 /// Columns of a reading.
 const VALUE: usize = 7;

@@ -3,8 +3,8 @@
 use ratatui::text::Line;
 
 use super::{Detail, Shown};
+use crate::dashboard::look::lines::{Pen, decimals, fixed, number, percent};
 use crate::dashboard::look::{Paint, shortened, width};
-use crate::dashboard::views::lines::{Pen, decimals, fixed, number, percent};
 use crate::learning::{ActionChoice, Choice, Explanation, Level, Rule};
 
 /// Columns below which numbers have a digit less.

@@ -4,11 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::desk::Desk;
 use super::lattice::Lattice;
-use super::look::{Look, Paint, put, width};
-use super::scene::{Scene, agent, sign};
-use super::views::letters;
+use super::marks::{Scene, agent, sign};
+use crate::dashboard::desk::Desk;
+use crate::dashboard::look::{Look, Paint, put, width};
 use crate::lab::specimen::{PolicyCell, PolicyMap};
 use crate::worlds::SubtaskId;
 use crate::worlds::scene::{Role, Scenery};
@@ -60,7 +59,7 @@ pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, lattice: Lattice, buffe
 
 /// Where a value stands between the lowest, 0, and the highest, 1: in the middle where all are
 /// the same but for what single precision makes of them.
-pub(super) fn share(value: f32, [low, high]: [f32; 2]) -> f32 {
+pub(in crate::dashboard) fn share(value: f32, [low, high]: [f32; 2]) -> f32 {
     let noise = 8.0 * f32::EPSILON * low.abs().max(high.abs());
     match high - low > noise.max(f32::MIN_POSITIVE) {
         true => (value - low) / (high - low),
@@ -133,7 +132,7 @@ fn action(desk: &Desk, cell: &PolicyCell) -> Option<String> {
 
 fn letter(desk: &Desk, subtask: SubtaskId) -> char {
     let catalogue = desk.catalogue();
-    let mut named = catalogue.primitives().zip(letters(catalogue));
+    let mut named = catalogue.primitives().zip(catalogue.letters());
     let found = named.find(|(primitive, _)| *primitive == subtask);
     found.map_or('?', |(_, letter)| letter)
 }

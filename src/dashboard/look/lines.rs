@@ -4,10 +4,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use crate::dashboard::look::{Look, Paint, fitted, width};
+use super::Look;
+use super::paint::Paint;
+use super::text::{fitted, width};
 
 /// A line under construction: pieces of text, each with a paint.
-pub(super) struct Pen<'l> {
+pub(in crate::dashboard) struct Pen<'l> {
     look: &'l Look,
     spans: Vec<Span<'static>>,
     column: usize,
@@ -15,7 +17,7 @@ pub(super) struct Pen<'l> {
 
 impl<'l> Pen<'l> {
     /// An empty line.
-    pub(super) fn new(look: &'l Look) -> Self {
+    pub(in crate::dashboard) fn new(look: &'l Look) -> Self {
         Self {
             look,
             spans: Vec::new(),
@@ -24,12 +26,12 @@ impl<'l> Pen<'l> {
     }
 
     /// Columns used so far.
-    pub(super) fn column(&self) -> usize {
+    pub(in crate::dashboard) fn column(&self) -> usize {
         self.column
     }
 
     /// Adds a text.
-    pub(super) fn text(mut self, text: impl Into<String>, paint: Paint) -> Self {
+    pub(in crate::dashboard) fn text(mut self, text: impl Into<String>, paint: Paint) -> Self {
         let text = text.into();
         self.column += width(&text);
         self.spans.push(Span::styled(text, self.look.style(paint)));
@@ -37,7 +39,7 @@ impl<'l> Pen<'l> {
     }
 
     /// Adds blanks up to a column.
-    pub(super) fn to(self, column: usize) -> Self {
+    pub(in crate::dashboard) fn to(self, column: usize) -> Self {
         let blanks = column.saturating_sub(self.column);
         match blanks {
             0 => self,
@@ -46,20 +48,20 @@ impl<'l> Pen<'l> {
     }
 
     /// Adds a text cut or filled up to some columns.
-    pub(super) fn cell(self, text: &str, columns: usize, paint: Paint) -> Self {
+    pub(in crate::dashboard) fn cell(self, text: &str, columns: usize, paint: Paint) -> Self {
         let end = self.column + columns;
         let text = fitted(text, columns, self.look.signs);
         self.text(text, paint).to(end)
     }
 
     /// Adds a text that ends after some columns, one blank before it.
-    pub(super) fn right(self, text: &str, columns: usize, paint: Paint) -> Self {
+    pub(in crate::dashboard) fn right(self, text: &str, columns: usize, paint: Paint) -> Self {
         let start = self.column + columns.saturating_sub(width(text));
         self.to(start).text(text, paint)
     }
 
     /// Adds a horizontal bar: a share of some columns.
-    pub(super) fn bar(self, share: f64, columns: usize, paint: Paint) -> Self {
+    pub(in crate::dashboard) fn bar(self, share: f64, columns: usize, paint: Paint) -> Self {
         let filled = (share.clamp(0.0, 1.0) * columns as f64).round() as usize;
         let sign = self.look.signs.filled;
         let end = self.column + columns;
@@ -67,13 +69,13 @@ impl<'l> Pen<'l> {
     }
 
     /// The line.
-    pub(super) fn line(self) -> Line<'static> {
+    pub(in crate::dashboard) fn line(self) -> Line<'static> {
         Line::from(self.spans)
     }
 }
 
 /// Draws lines from one on, as many as there is room for; says where some are left out.
-pub(super) fn draw_lines(
+pub(in crate::dashboard) fn draw_lines(
     look: &Look,
     lines: &[Line<'_>],
     from: usize,
@@ -125,12 +127,12 @@ pub(in crate::dashboard) fn mark_more(
 }
 
 /// The last line from which a list still fills its rows.
-pub(super) fn last_start(lines: usize, rows: u16) -> usize {
+pub(in crate::dashboard) fn last_start(lines: usize, rows: u16) -> usize {
     lines.saturating_sub(usize::from(rows))
 }
 
 /// A value in at most eight columns.
-pub(super) fn number(value: f32) -> String {
+pub(in crate::dashboard) fn number(value: f32) -> String {
     let size = value.abs();
     let text = match value {
         _ if !value.is_finite() => String::from("none"),
@@ -143,7 +145,7 @@ pub(super) fn number(value: f32) -> String {
 
 /// Digits after the point with which the largest of some values has four in all, and no
 /// column is wider than eight.
-pub(super) fn decimals(values: impl IntoIterator<Item = f32>) -> usize {
+pub(in crate::dashboard) fn decimals(values: impl IntoIterator<Item = f32>) -> usize {
     let sizes = values.into_iter().map(f32::abs);
     let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f32::max);
     match largest {
@@ -156,7 +158,7 @@ pub(super) fn decimals(values: impl IntoIterator<Item = f32>) -> usize {
 }
 
 /// A value with so many digits after the point, in at most eight columns.
-pub(super) fn fixed(value: f32, decimals: usize) -> String {
+pub(in crate::dashboard) fn fixed(value: f32, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match value.is_finite() && text.len() <= 8 {
         true => unsigned_zero(text),
@@ -166,15 +168,15 @@ pub(super) fn fixed(value: f32, decimals: usize) -> String {
 
 /// Values smaller than this are nothing beside rewards: what is left of a value that has
 /// decayed for hundreds of updates.
-pub(super) const TINY: f32 = 1e-9;
+pub(in crate::dashboard) const TINY: f32 = 1e-9;
 
 /// Whether a value is nothing beside rewards, but not zero.
-pub(super) fn is_tiny(value: f32) -> bool {
+pub(in crate::dashboard) fn is_tiny(value: f32) -> bool {
     value != 0.0 && value.abs() < TINY
 }
 
 /// Two values with as many digits as tell them apart; those that are tiny as `nothing`.
-pub(super) fn told_apart(one: f32, other: f32, nothing: &str) -> [String; 2] {
+pub(in crate::dashboard) fn told_apart(one: f32, other: f32, nothing: &str) -> [String; 2] {
     let values = [one, other];
     let text = |value: f32, decimals| match is_tiny(value) {
         true => nothing.to_owned(),
@@ -199,7 +201,7 @@ fn unsigned_zero(text: String) -> String {
 }
 
 /// A probability as a percentage in four columns.
-pub(super) fn percent(probability: f64) -> String {
+pub(in crate::dashboard) fn percent(probability: f64) -> String {
     let percent = probability * 100.0;
     match percent {
         p if p > 0.0 && p < 1.0 => String::from("<1 %"),

@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::look::{Look, Paint, put};
+use crate::dashboard::look::{Look, Paint, put};
 
 /// Columns of a cell from which on its number has room.
 const READABLE: u16 = 7;

@@ -1,0 +1,60 @@
+//! What clicks and the wheel do to the dashboard of a run.
+
+use ratatui::layout::{Position, Rect};
+
+use super::app::App;
+use super::input::Effect;
+use super::keys::Action;
+use super::mouse::{Clicked, Mouse};
+use super::overlay::Overlay;
+use super::panel::{body, inside};
+use super::view_id::ViewId;
+use super::views::panels;
+
+impl App {
+    /// Does what the mouse asks for.
+    pub(super) fn mouse(&mut self, mouse: Mouse) -> Vec<Effect> {
+        // A click closes what is open, a question too: that answers nothing.
+        match self.overlay.take() {
+            Some(Overlay::Help { scroll }) => {
+                self.scroll_help(scroll, mouse.what.scrolls());
+                return Vec::new();
+            }
+            Some(_) => return Vec::new(),
+            None => {}
+        }
+        let Some((id, area)) = self.place_at(mouse.at) else {
+            return Vec::new();
+        };
+        let had_focus = self.view != ViewId::Overview || self.desk.focus == id;
+        if self.view == ViewId::Overview {
+            self.desk.focus = id;
+        }
+        if let Some(action) = mouse.what.scrolls() {
+            return self.perform(action);
+        }
+        let view = self.views.iter_mut().find(|(known, _)| *known == id);
+        let clicked = view.map_or(Clicked::Nothing, |(_, view)| {
+            view.click(&mut self.desk, inside(area), mouse.at)
+        });
+        let opens = match (self.view, clicked) {
+            (ViewId::Overview, clicked) => had_focus && clicked != Clicked::Selected,
+            (_, clicked) => clicked == Clicked::Again,
+        };
+        match opens {
+            true => self.perform(Action::Open),
+            false => Vec::new(),
+        }
+    }
+
+    /// The view at a place of the screen, and its area with the border.
+    fn place_at(&self, at: Position) -> Option<(ViewId, Rect)> {
+        let (width, height) = self.desk.size;
+        let body = body(Rect::new(0, 0, width, height));
+        let placed = match self.view {
+            ViewId::Overview => panels(body, &self.desk),
+            view => vec![(view, body)],
+        };
+        placed.into_iter().find(|(_, area)| area.contains(at))
+    }
+}

@@ -1,0 +1,241 @@
+//! The table as a state: what is told of the runs, what keys and clicks do.
+
+use std::collections::BTreeMap;
+
+use ratatui::Frame;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use super::columns::Column;
+use super::row::{RunRow, Standing};
+use super::work::{self, RunsEffect, RunsNews, Work};
+use crate::dashboard::keys::{Action, Key, KeyMap};
+use crate::dashboard::look::Look;
+use crate::dashboard::mouse::{Mouse, line_at};
+use crate::dashboard::overlay;
+use crate::dashboard::panel::{body, inside};
+use crate::dashboard::view_id::ViewId;
+
+/// A table of runs.
+#[derive(Clone, Debug)]
+pub struct RunsTable {
+    pub(super) name: String,
+    pub(super) folder: String,
+    pub(super) look: Look,
+    pub(super) keys: KeyMap,
+    pub(super) size: (u16, u16),
+    /// The runs in the order in which they were told; `None` before that.
+    pub(super) rows: Option<Vec<RunRow>>,
+    /// Smallest and largest value of the courses of a scenario, so that the sparklines of
+    /// its runs can be compared.
+    pub(super) ranges: BTreeMap<String, [f64; 2]>,
+    /// What the rows are sorted by; else they are in the order in which they were told.
+    pub(super) by: Option<Column>,
+    pub(super) reversed: bool,
+    /// Place of the selected run in the rows that were told.
+    pub(super) selected: usize,
+    /// Lines of help above the screen, while it is open.
+    pub(super) help: Option<u16>,
+    /// Work of this program on the runs, while it goes on.
+    pub(super) work: Option<Work>,
+    /// Whether it was asked what becomes of the work, and not answered yet.
+    pub(super) asked: bool,
+    /// What was said since the last key.
+    pub(super) message: Option<String>,
+}
+
+impl RunsTable {
+    /// A table of the runs of the study with this name; `folder` is its folder, for people.
+    #[must_use]
+    pub fn new(name: String, folder: String, look: Look, keys: KeyMap) -> Self {
+        Self {
+            name,
+            folder,
+            look,
+            keys,
+            size: (80, 24),
+            rows: None,
+            ranges: BTreeMap::new(),
+            by: None,
+            reversed: false,
+            selected: 0,
+            help: None,
+            work: None,
+            asked: false,
+            message: None,
+        }
+    }
+
+    /// Themes and signs in use.
+    #[must_use]
+    pub fn look(&self) -> &Look {
+        &self.look
+    }
+
+    /// The terminal has so many columns and rows.
+    pub fn resize(&mut self, columns: u16, rows: u16) {
+        self.size = (columns, rows);
+    }
+
+    /// Says something to the person, until the next key.
+    pub fn say(&mut self, text: impl Into<String>) {
+        self.message = Some(text.into());
+    }
+
+    /// The news of the runs, and of this program's work on them. Whether anything has changed.
+    pub fn take_in(&mut self, news: RunsNews) -> bool {
+        let changed = self.work != news.work;
+        self.work = news.work;
+        self.asked &= self.work.is_some();
+        self.tell(news.rows) || changed
+    }
+
+    /// The runs as they are now, always in the same order. Whether anything has changed.
+    pub fn tell(&mut self, rows: Vec<RunRow>) -> bool {
+        if self.rows.as_ref() == Some(&rows) {
+            return false;
+        }
+        self.ranges.clear();
+        for row in &rows {
+            let known = [f64::INFINITY, f64::NEG_INFINITY];
+            let range = self.ranges.entry(row.scenario.clone()).or_insert(known);
+            for steps in &row.course {
+                *range = [range[0].min(*steps), range[1].max(*steps)];
+            }
+        }
+        self.selected = self.selected.min(rows.len().saturating_sub(1));
+        self.rows = Some(rows);
+        true
+    }
+
+    /// Takes in a key; returns what is to be done about it.
+    pub fn key(&mut self, key: Key) -> Option<RunsEffect> {
+        self.message = None;
+        if self.asked {
+            self.asked = false;
+            return work::answer(&self.keys, key);
+        }
+        // The table's keys are those of the table of a population.
+        let action = self.keys.in_view(key, ViewId::Population);
+        if let Some(scroll) = self.help {
+            let lines = self.help_lines().len();
+            self.help = overlay::scrolled(scroll, action, self.size.1, lines);
+            return None;
+        }
+        self.perform(action?)
+    }
+
+    pub(super) fn perform(&mut self, action: Action) -> Option<RunsEffect> {
+        let page = (self.size.1 / 2).max(1) as isize;
+        match action {
+            Action::Up => self.select(-1),
+            Action::Down => self.select(1),
+            Action::PageUp => self.select(-page),
+            Action::PageDown => self.select(page),
+            Action::Top => self.select(isize::MIN),
+            Action::Bottom => self.select(isize::MAX),
+            Action::Sort => self.by = Column::next(self.by),
+            Action::Reverse => self.reversed = !self.reversed,
+            Action::Open => return self.open(),
+            Action::Help => self.help = Some(0),
+            Action::Theme => {
+                self.look.next_theme();
+                self.say(format!("theme: {}", self.look.theme()));
+            }
+            Action::Quit if self.work.is_some() => self.asked = true,
+            Action::Quit => return Some(RunsEffect::Leave),
+            Action::Suspend => return Some(RunsEffect::Suspend),
+            Action::Redraw => return Some(RunsEffect::Redraw),
+            _ => {}
+        }
+        None
+    }
+
+    /// Selects the run at a place of the screen. Whether it was selected before.
+    pub(super) fn click(&mut self, at: Position) -> bool {
+        self.message = None;
+        if self.help.take().is_some() || std::mem::take(&mut self.asked) {
+            return false;
+        }
+        let (width, height) = self.size;
+        let table = inside(body(Rect::new(0, 0, width, height)));
+        let line = line_at(at, table, 1);
+        let clicked = line.and_then(|line| self.visible(table).get(line).copied());
+        let before = self.selected;
+        self.selected = clicked.unwrap_or(before);
+        clicked == Some(before)
+    }
+
+    /// The places of the rows that there is room for below the head, that of the selected run
+    /// among them.
+    pub(super) fn visible(&self, area: Rect) -> Vec<usize> {
+        let sorted = self.sorted();
+        let here = sorted.iter().position(|&place| place == self.selected);
+        let rows = usize::from(area.height.saturating_sub(1));
+        let skipped = here.unwrap_or(0).saturating_sub(rows / 2);
+        let skipped = skipped.min(sorted.len().saturating_sub(rows));
+        sorted.into_iter().skip(skipped).take(rows).collect()
+    }
+
+    fn open(&mut self) -> Option<RunsEffect> {
+        let row = self.rows().get(self.selected)?;
+        match (row.standing, &row.trouble) {
+            (Standing::Waiting, _) => self.say("this run has not begun"),
+            (Standing::Unreadable | Standing::Failed, Some(trouble)) => self.say(trouble.clone()),
+            _ => return Some(RunsEffect::Open(self.selected)),
+        }
+        None
+    }
+
+    pub(super) fn rows(&self) -> &[RunRow] {
+        self.rows.as_deref().unwrap_or_default()
+    }
+
+    /// The places of the rows, in the order in which they are shown.
+    fn sorted(&self) -> Vec<usize> {
+        let rows = self.rows();
+        let mut places: Vec<_> = (0..rows.len()).collect();
+        if let Some(column) = self.by {
+            places.sort_by(|&one, &other| column.compare(&rows[one], &rows[other]));
+        }
+        if self.reversed {
+            places.reverse();
+        }
+        places
+    }
+
+    /// Selects the run some lines further down.
+    fn select(&mut self, by: isize) {
+        let sorted = self.sorted();
+        let here = sorted.iter().position(|&place| place == self.selected);
+        let next = here.unwrap_or(0).saturating_add_signed(by);
+        if let Some(&place) = sorted.get(next).or(sorted.last()) {
+            self.selected = place;
+        }
+    }
+
+    /// The frame as it would be on a terminal of the present size.
+    #[must_use]
+    pub fn frame(&self) -> Buffer {
+        let (width, height) = self.size;
+        let mut buffer = Buffer::empty(Rect::new(0, 0, width, height));
+        self.draw_on(&mut buffer);
+        buffer
+    }
+
+    /// Draws everything.
+    pub fn draw(&self, frame: &mut Frame<'_>) {
+        self.draw_on(frame.buffer_mut());
+    }
+}
+
+impl RunsTable {
+    /// Does what the mouse asks for: a click on the run that is selected opens it.
+    pub fn mouse(&mut self, mouse: Mouse) -> Option<RunsEffect> {
+        match mouse.what.scrolls() {
+            Some(action) => self.perform(action),
+            None if self.click(mouse.at) => self.perform(Action::Open),
+            None => None,
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Worlds, drawn: cell by cell, or in their true proportions.
+
+mod cells;
+mod lattice;
+mod marks;
+mod plane;
+mod sight;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+pub(super) use cells::share;
+pub(super) use marks::Scene;
+pub(super) use plane::{draw_mark, in_proportion};
+
+use self::cells::draw_cells;
+use self::lattice::Lattice;
+use self::plane::draw_plane;
+use super::desk::Desk;
+
+/// Draws the world and, if there is one, the agent in it, as large as the area allows.
+pub(in crate::dashboard) fn draw_scene(
+    desk: &Desk,
+    scene: &Scene<'_>,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
+    let scenery = desk.scenery();
+    // Where cells are too many for the area the world is drawn as one without cells.
+    let lattice = scenery.grid.and_then(|grid| Lattice::fitting(area, grid));
+    if let Some(lattice) = lattice {
+        return draw_cells(desk, scene, lattice, buffer);
+    }
+    draw_plane(&desk.look, scenery, scene, area, buffer);
+}
