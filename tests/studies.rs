@@ -21,8 +21,8 @@ use common::{SHORT, output, program, stderr, stdout};
 use maxq_lab::evolution::Origin;
 use maxq_lab::lab::{Event, Keep, RunFolder, read_events};
 use maxq_lab::report::{
-    Arm, Base, Facts, Happening, Plan, Reevaluation, Stage, StatusWatch, Study, StudyControls,
-    carry_out, status,
+    Arm, Base, Facts, Plan, Reevaluation, RunState, StatusWatch, Study, StudyControls, StudyEvent,
+    run_study, status,
 };
 use maxq_lab::scenario::EMBEDDED;
 
@@ -48,14 +48,14 @@ fn two() -> NonZeroUsize {
 
 fn do_all(study: &Study) {
     let controls = StudyControls::default();
-    carry_out(
+    run_study(
         study,
         &study.runs(),
         two(),
         Keep::None,
         &controls,
         |happening| {
-            if let Happening::Failed { error, .. } = happening {
+            if let StudyEvent::Failed { error, .. } = happening {
                 panic!("{error}");
             }
         },
@@ -92,7 +92,7 @@ fn broken_off_anywhere_and_in_any_order_it_is_the_same() {
                 thread::sleep(Duration::from_millis(milliseconds));
                 controls.stop();
             });
-            carry_out(
+            run_study(
                 &broken,
                 &broken.runs(),
                 two(),
@@ -110,12 +110,12 @@ fn broken_off_anywhere_and_in_any_order_it_is_the_same() {
     let mut runs = reverse.runs();
     runs.reverse();
     let controls = StudyControls::default();
-    carry_out(&reverse, &runs, two(), Keep::None, &controls, |_| {});
+    run_study(&reverse, &runs, two(), Keep::None, &controls, |_| {});
     assert_same(&whole.folder, &reverse.folder);
     assert!(
         status(&reverse)
             .iter()
-            .all(|status| status.stage == Stage::Done)
+            .all(|status| status.stage == RunState::Done)
     );
 }
 
@@ -149,7 +149,7 @@ fn killed_and_started_twice_at_once_it_is_the_same() {
     assert!(
         status(&killed)
             .iter()
-            .all(|status| status.stage == Stage::Done)
+            .all(|status| status.stage == RunState::Done)
     );
     assert_same(&whole.folder, &killed.folder);
 }
@@ -212,7 +212,7 @@ fn every_arm_does_what_its_name_says() {
             Base::RandomChoice => {
                 assert_ne!(
                     scenario.learning,
-                    maxq_lab::scenario::LearningModel::default()
+                    maxq_lab::scenario::LearningSettings::default()
                 );
             }
             Base::Evolved => {}
@@ -238,9 +238,9 @@ fn a_look_reads_what_has_changed_and_nothing_else() {
         let looked = watch.look();
         looked.iter().map(|status| status.stage).collect::<Vec<_>>()
     };
-    assert_eq!(stages(), [Stage::Waiting, Stage::Waiting]);
+    assert_eq!(stages(), [RunState::Waiting, RunState::Waiting]);
     do_all(&study);
-    assert_eq!(stages(), [Stage::Done, Stage::Done]);
+    assert_eq!(stages(), [RunState::Done, RunState::Done]);
 
     // Damaged so that it looks the same from outside: who read it would find it unreadable.
     let file = study.run_folder(&run).join("evaluation.json");
@@ -248,8 +248,8 @@ fn a_look_reads_what_has_changed_and_nothing_else() {
     fs::write(&file, " ".repeat(before.len().try_into().unwrap())).unwrap();
     let opened = fs::File::options().write(true).open(&file).unwrap();
     opened.set_modified(before.modified().unwrap()).unwrap();
-    assert_eq!(stages(), [Stage::Done, Stage::Done]);
-    assert_eq!(status(&study)[0].stage, Stage::Unreadable);
+    assert_eq!(stages(), [RunState::Done, RunState::Done]);
+    assert_eq!(status(&study)[0].stage, RunState::Unreadable);
     fs::remove_file(&file).unwrap();
 
     // A run that is not over is followed from where it was.
@@ -268,13 +268,17 @@ fn a_look_reads_what_has_changed_and_nothing_else() {
         assert_eq!(looked.best_steps.len(), lived);
         looked.stage
     };
-    assert_eq!(look_after(2), Stage::Interrupted);
-    assert_eq!(look_after(4), Stage::Interrupted);
-    assert_eq!(look_after(3), Stage::Interrupted, "some of it was cut off");
+    assert_eq!(look_after(2), RunState::Interrupted);
+    assert_eq!(look_after(4), RunState::Interrupted);
+    assert_eq!(
+        look_after(3),
+        RunState::Interrupted,
+        "some of it was cut off"
+    );
     fs::write(&log, &whole).unwrap();
     do_all(&study);
     let ends = watch.look().into_iter().map(|status| status.stage);
-    assert!(ends.eq([Stage::Done, Stage::Done]));
+    assert!(ends.eq([RunState::Done, RunState::Done]));
 }
 
 #[test]
@@ -302,14 +306,14 @@ fn a_study_takes_no_folder_of_another_plan_and_no_run_of_another_study() {
     fs::remove_file(study.run_folder(&run).join("summary.json")).unwrap();
     let mut failed = Vec::new();
     let failures = std::sync::Mutex::new(&mut failed);
-    carry_out(
+    run_study(
         &study,
         &[run],
         two(),
         Keep::None,
         &StudyControls::default(),
         |happening| {
-            if let Happening::Failed { error, .. } = happening {
+            if let StudyEvent::Failed { error, .. } = happening {
                 failures.lock().unwrap().push(error.to_string());
             }
         },

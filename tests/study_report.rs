@@ -14,7 +14,7 @@ use std::path::Path;
 use std::process::Command;
 
 use common::{output, program, short, stderr, stdout, threads};
-use maxq_lab::report::figures::{Number, Panel, RunSource};
+use maxq_lab::report::figures::{FigureNumber, Panel, RunSource};
 use maxq_lab::report::{
     Arm, Base, Facts, Findings, FreshFacts, Judged, Moment, Plan, Study, Verdict, Winner,
 };
@@ -307,7 +307,7 @@ fn the_report_of_real_runs_repeats_and_reads_as_tables() {
             assert!(!content.contains("DIR"), "{name} has a placeholder");
         }
     }
-    assert_eq!(files.len(), 7 + 2 * Number::ALL.len());
+    assert_eq!(files.len(), 7 + 2 * FigureNumber::ALL.len());
 
     let runs = rows(&succeeds(
         program().arg("export").arg(&out).args(["--format", "csv"]),
@@ -343,7 +343,7 @@ fn every_figure_of_a_run_is_drawn_and_says_what_made_it() {
     common::run_in(&folder, &short(&[]), 7, &threads(1));
     let source = RunSource::read(&folder).unwrap();
     let at = folder.display().to_string();
-    for number in Number::ALL {
+    for number in FigureNumber::ALL {
         let figure = source.figure(number, "svg").unwrap();
         let svg = figure.svg().unwrap();
         assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
@@ -366,15 +366,15 @@ fn every_figure_of_a_run_is_drawn_and_says_what_made_it() {
         assert!(rows(&figure.table().csv()).len() > 1);
     }
     // A line for every rank of the better half, a point for every generation.
-    let performance = source.figure(Number::F4_8, "csv").unwrap().table();
+    let performance = source.figure(FigureNumber::F4_8, "csv").unwrap().table();
     assert_eq!(performance.rows.len(), 4 * source.records.len());
     // Actions of ApproachBattery, ApproachNest and Turn.
-    let values = source.figure(Number::F4_3, "svg").unwrap();
+    let values = source.figure(FigureNumber::F4_3, "svg").unwrap();
     assert_eq!(values.panels.len(), 3);
     assert!(values.svg().unwrap().contains("angle (deg)"));
     // Probabilities can be compared from panel to panel: one scale, one look for each subtask.
     let mut marks = std::collections::BTreeMap::new();
-    for panel in source.figure(Number::F4_10, "svg").unwrap().panels {
+    for panel in source.figure(FigureNumber::F4_10, "svg").unwrap().panels {
         let Panel::Chart(chart) = panel else {
             panic!("a hierarchy")
         };

@@ -7,7 +7,7 @@ use clap::ValueEnum;
 
 use super::output::{self, Done, Failure};
 use crate::files::write_atomically;
-use crate::report::figures::{Figure, Number, RunSource, study_figure};
+use crate::report::figures::{Figure, FigureNumber, RunSource, study_figure};
 use crate::report::{Study, read_facts, run_export, study_export};
 
 /// Export a run or a study: tables, figures, hierarchies.
@@ -36,7 +36,7 @@ pub(super) struct Args {
 
     /// A figure of the thesis: 4.3, 4.5, 4.7, 4.8, 4.9 or 4.10.
     #[arg(long, value_name = "NUMBER")]
-    figure: Option<Number>,
+    figure: Option<FigureNumber>,
 
     /// A file to write to [default: standard output].
     #[arg(long, value_name = "FILE")]
@@ -106,10 +106,10 @@ fn of_study(args: &Args) -> Result<String, Failure> {
 }
 
 /// The figure asked for; formats that are figures need one.
-fn wanted_figure(args: &Args) -> Result<Option<Number>, Failure> {
+fn wanted_figure(args: &Args) -> Result<Option<FigureNumber>, Failure> {
     let draws = matches!(args.format, ExportFormat::Svg | ExportFormat::Text);
     if draws && args.figure.is_none() {
-        let allowed = Number::ALL.map(Number::name).join(", ");
+        let allowed = FigureNumber::ALL.map(FigureNumber::name).join(", ");
         return Err(format!("--figure: found none; allowed with svg and text: {allowed}").into());
     }
     Ok(args.figure)

@@ -2,11 +2,11 @@
 
 use crate::hierarchy::Tree;
 use crate::learning::{CompositeValues, Hierarchy};
-use crate::scenario::LearningModel;
+use crate::scenario::LearningSettings;
 use crate::worlds::{Catalogue, SubtaskId};
 
 /// A hierarchy of this shape.
-pub(super) fn newborn(tree: Tree, learning: &LearningModel, catalogue: &Catalogue) -> Hierarchy {
+pub(super) fn newborn(tree: Tree, learning: &LearningSettings, catalogue: &Catalogue) -> Hierarchy {
     let temperature = learning.initial_temperature as f32;
     let initial = learning.initial_parameter as f32;
     Hierarchy::new(tree, catalogue, temperature, initial)
@@ -14,7 +14,7 @@ pub(super) fn newborn(tree: Tree, learning: &LearningModel, catalogue: &Catalogu
 
 /// A composite subtask with these children.
 pub(super) fn anew(
-    learning: &LearningModel,
+    learning: &LearningSettings,
     subtask: SubtaskId,
     children: &[SubtaskId],
     catalogue: &Catalogue,

@@ -7,7 +7,7 @@ use super::checkpoint_error::CheckpointError;
 use crate::evolution::{Individual, Origin, TreeError, read_tree};
 use crate::hierarchy::to_text;
 use crate::learning::{CompositeValues, Hierarchy, Skill, Skills};
-use crate::scenario::{LearningModel, PrimitiveLearning, Scenario};
+use crate::scenario::{LearningSettings, PrimitiveLearning, Scenario};
 use crate::worlds::{Catalogue, SubtaskId};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -173,7 +173,7 @@ impl IndividualFile {
         &self,
         place: &str,
         catalogue: &Catalogue,
-        learning: &LearningModel,
+        learning: &LearningSettings,
     ) -> Result<Option<Skills>, CheckpointError> {
         let place = format!("{place}.primitives");
         let own = learning.primitive_learning == PrimitiveLearning::Individual;
@@ -239,7 +239,7 @@ impl CompositeFile {
 fn check_temperature(
     place: &str,
     found: f32,
-    learning: &LearningModel,
+    learning: &LearningSettings,
 ) -> Result<(), CheckpointError> {
     let (limit, initial) = (
         learning.temperature_limit as f32,

@@ -16,7 +16,7 @@ use super::situation::{Completion, Mind, Situation};
 use super::skills::Skills;
 use super::visited::Visited;
 use crate::random::Stream;
-use crate::scenario::{CompositeChoice, LearningModel, PrimitiveLearning};
+use crate::scenario::{CompositeChoice, LearningSettings, PrimitiveLearning};
 use crate::worlds::World;
 
 /// An active composite subtask.
@@ -33,7 +33,7 @@ pub(super) struct Frame {
 #[derive(Clone, Debug)]
 pub struct Agent<'r, W: World> {
     pub(super) world: &'r W,
-    pub(super) model: &'r LearningModel,
+    pub(super) settings: &'r LearningSettings,
     pub(super) softmax: Softmax,
     pub(super) mind: Mind<'r>,
     hierarchy_tree: crate::hierarchy::Tree,
@@ -67,7 +67,7 @@ impl<'r, W: World> Agent<'r, W> {
     pub fn new(
         world: &'r W,
         encoder: &'r Encoder,
-        model: &'r LearningModel,
+        settings: &'r LearningSettings,
         hierarchy: Hierarchy,
         skills: Skills,
         step_limit: u32,
@@ -84,13 +84,13 @@ impl<'r, W: World> Agent<'r, W> {
         let situation = Situation::new(&mind, catalogue.terminal());
         let mut discounts = vec![1.0_f64];
         for power in 0..step_limit as usize {
-            discounts.push(discounts[power] * model.discount);
+            discounts.push(discounts[power] * settings.discount);
         }
         Self {
             world,
-            model,
-            softmax: Softmax::new(model),
-            visited: Visited::new(&mind.plan, model),
+            settings,
+            softmax: Softmax::new(settings),
+            visited: Visited::new(&mind.plan, settings),
             mind,
             hierarchy_tree: tree,
             before: situation.clone(),
@@ -182,7 +182,7 @@ impl<'r, W: World> Agent<'r, W> {
             }
         }
         let values = self.mind.action_values(&mut self.now, skill);
-        let limit = self.model.temperature_limit as f32;
+        let limit = self.settings.temperature_limit as f32;
         let action = self.softmax.choose(values, limit, rng);
         let value = values[action];
         let subtask = self.mind.plan.nodes[node].subtask;
@@ -193,10 +193,10 @@ impl<'r, W: World> Agent<'r, W> {
         std::mem::swap(&mut self.now, &mut self.before);
         self.perceive(&trial.state);
         trial.done = self.now.state_type == self.world.catalogue().terminal();
-        if self.model.primitive_learning != PrimitiveLearning::Frozen {
+        if self.settings.primitive_learning != PrimitiveLearning::Frozen {
             let map = self.mind.plan.nodes[node].map;
             let features = self.mind.encoder.encode(map, &mut self.before.features);
-            let step = self.model.learning_rate as f32 * (reward - value);
+            let step = self.settings.learning_rate as f32 * (reward - value);
             self.mind.skills.at_mut(skill).learn(action, features, step);
             self.before.forget_values();
         }
@@ -241,7 +241,7 @@ impl<'r, W: World> Agent<'r, W> {
         if let [] | [_] = choices {
             return choices.first().copied();
         }
-        if self.model.composite_choice == CompositeChoice::Random {
+        if self.settings.composite_choice == CompositeChoice::Random {
             return Some(choices[uniform(rng.random(), choices.len())]);
         }
         self.scratch.clear();

@@ -10,7 +10,7 @@ use super::observe::{Observer, Update};
 use super::selection::{Rule, Softmax};
 use super::situation::{Completion, Mind, Situation};
 use crate::random::Stream;
-use crate::scenario::{CompositeChoice, LearningModel, PrimitiveLearning};
+use crate::scenario::{CompositeChoice, LearningSettings, PrimitiveLearning};
 use crate::worlds::{StateType, World};
 
 /// A child that a composite node can choose in a state.
@@ -194,7 +194,7 @@ impl<W: World> Agent<'_, W> {
                 .map(|frame| (frame.node, frame.child))
                 .collect(),
             softmax: self.softmax,
-            model: self.model,
+            settings: self.settings,
         };
         let mut witness = Witness::default();
         self.advance(trial, step_limit, rng, &mut witness);
@@ -217,7 +217,7 @@ struct Past<'r> {
     /// Active nodes, each with the child invoked last.
     frames: Vec<(usize, usize)>,
     softmax: Softmax,
-    model: &'r LearningModel,
+    settings: &'r LearningSettings,
 }
 
 impl Past<'_> {
@@ -233,7 +233,7 @@ impl Past<'_> {
             .map(|(node, active)| {
                 let (rule, choices) =
                     self.mind
-                        .choices(&mut self.now, node, self.softmax, self.model);
+                        .choices(&mut self.now, node, self.softmax, self.settings);
                 Level {
                     node,
                     temperature: self.mind.temperature(node),
@@ -256,12 +256,12 @@ impl Past<'_> {
     ) -> ActionChoice {
         let skill = self.mind.plan.nodes[node].skill.unwrap_or_default();
         let values = self.mind.action_values(&mut self.now, skill).to_vec();
-        let temperature = self.model.temperature_limit as f32;
+        let temperature = self.settings.temperature_limit as f32;
         let mut probabilities = vec![0.0; values.len()];
         let rule = self
             .softmax
             .probabilities(&values, temperature, &mut probabilities);
-        let learns = self.model.primitive_learning != PrimitiveLearning::Frozen;
+        let learns = self.settings.primitive_learning != PrimitiveLearning::Frozen;
         let learned = learns.then(|| Change {
             before: values[chosen],
             after: after.action_values(again, skill)[chosen],
@@ -302,7 +302,7 @@ impl Past<'_> {
                 node,
                 child,
                 pseudo_reward: pseudo_reward(
-                    self.model,
+                    self.settings,
                     goal.contains(reached),
                     terminated.is_some(),
                 ),
@@ -329,7 +329,7 @@ impl Mind<'_> {
         now: &mut Situation,
         node: usize,
         softmax: Softmax,
-        model: &LearningModel,
+        settings: &LearningSettings,
     ) -> (Rule, Vec<Choice>) {
         let children = self.plan.choices(node, now.state_type);
         let mut choices: Vec<_> = children
@@ -345,7 +345,7 @@ impl Mind<'_> {
         if choices.len() < 2 {
             return (Rule::OnlyChoice, choices);
         }
-        if model.composite_choice == CompositeChoice::Random {
+        if settings.composite_choice == CompositeChoice::Random {
             return (Rule::Uniform, choices);
         }
         let values: Vec<_> = choices.iter().map(Choice::preference).collect();

@@ -11,7 +11,7 @@ use super::gate::{Gate, Stopped};
 use super::linear::value;
 use super::selection::Softmax;
 use crate::random::Stream;
-use crate::scenario::LearningModel;
+use crate::scenario::LearningSettings;
 use crate::worlds::finite::{FiniteModel, PolicyTable};
 use crate::worlds::{MapId, World};
 
@@ -41,7 +41,7 @@ pub struct Episode {
 pub struct Flat<'r, W: World> {
     world: &'r W,
     encoder: &'r Encoder,
-    model: &'r LearningModel,
+    settings: &'r LearningSettings,
     finite: &'r FiniteModel<W::Percept>,
     map: MapId,
     lesson: FlatLesson,
@@ -60,13 +60,13 @@ impl<'r, W: World> Flat<'r, W> {
     pub fn new(
         world: &'r W,
         encoder: &'r Encoder,
-        model: &'r LearningModel,
+        settings: &'r LearningSettings,
         finite: &'r FiniteModel<W::Percept>,
         map: MapId,
         lesson: FlatLesson,
     ) -> Self {
         let width = world.catalogue().maps[map.index()].width();
-        let mut vector = vec![model.initial_parameter as f32; width];
+        let mut vector = vec![settings.initial_parameter as f32; width];
         vector.resize(encoder.width(map), 0.0);
         let vectors = match lesson {
             FlatLesson::PolicyValues(_) => 1,
@@ -75,12 +75,12 @@ impl<'r, W: World> Flat<'r, W> {
         Self {
             world,
             encoder,
-            model,
+            settings,
             finite,
             map,
             lesson,
-            softmax: Softmax::new(model),
-            temperature: model.initial_temperature as f32,
+            softmax: Softmax::new(settings),
+            temperature: settings.initial_temperature as f32,
             theta: vec![vector; vectors],
             now: encoder.features(),
             next: encoder.features(),
@@ -122,8 +122,8 @@ impl<'r, W: World> Flat<'r, W> {
             }
         }
         gate.pass(episode.steps % Gate::STRIDE)?;
-        let cooled = self.temperature * self.model.temperature_decrease as f32;
-        self.temperature = cooled.max(self.model.temperature_limit as f32);
+        let cooled = self.temperature * self.settings.temperature_decrease as f32;
+        self.temperature = cooled.max(self.settings.temperature_limit as f32);
         Ok(episode)
     }
 
@@ -159,8 +159,8 @@ impl<'r, W: World> Flat<'r, W> {
             FlatLesson::PolicyValues(_) => &mut self.theta[0],
             FlatLesson::ActionValues => &mut self.theta[action],
         };
-        let target = reward + self.model.discount as f32 * ahead;
-        let step = self.model.learning_rate as f32 * (target - value(theta, features));
+        let target = reward + self.settings.discount as f32 * ahead;
+        let step = self.settings.learning_rate as f32 * (target - value(theta, features));
         for (parameter, feature) in theta.iter_mut().zip(features) {
             *parameter += step * feature;
         }

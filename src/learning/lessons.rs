@@ -4,7 +4,7 @@ use super::agent::{Agent, Frame};
 use super::linear::Replay;
 use super::observe::{Observer, Update};
 use super::situation::{Completion, Mind};
-use crate::scenario::{CompletionBootstrap, CoolOn, LearningModel, PseudoReward};
+use crate::scenario::{CompletionBootstrap, CoolOn, LearningSettings, PseudoReward};
 use crate::worlds::{StateType, World};
 
 impl<W: World> Agent<'_, W> {
@@ -39,7 +39,7 @@ impl<W: World> Agent<'_, W> {
         } = frame;
         let mind = &mut self.mind;
         let pseudo_reward = pseudo_reward(
-            self.model,
+            self.settings,
             mind.plan.nodes[node].goal.contains(self.now.state_type),
             terminal,
         );
@@ -48,7 +48,7 @@ impl<W: World> Agent<'_, W> {
             let (a_star, projected) = mind.best_child(&mut self.now, node);
             inside = mind.completion(&mut self.now, node, a_star, Completion::Inside);
             outside = projected + mind.completion(&mut self.now, node, a_star, Completion::Outside);
-            match self.model.completion_bootstrap {
+            match self.settings.completion_bootstrap {
                 CompletionBootstrap::NextState => inside += projected,
                 CompletionBootstrap::AsPrinted => best = Some(a_star),
             }
@@ -68,7 +68,7 @@ impl<W: World> Agent<'_, W> {
                 steps: 1,
                 discounts: &self.discounts[1..2],
                 targets: [inside, outside],
-                learning_rate: self.model.learning_rate as f32,
+                learning_rate: self.settings.learning_rate as f32,
             };
             mind.study(node, child, lesson, observer);
         } else {
@@ -96,7 +96,7 @@ impl<W: World> Agent<'_, W> {
                     steps,
                     discounts: &self.discounts[steps..=states - begin],
                     targets: [inside, outside],
-                    learning_rate: self.model.learning_rate as f32,
+                    learning_rate: self.settings.learning_rate as f32,
                 };
                 mind.study(node, child, lesson, observer);
                 end = begin;
@@ -111,22 +111,22 @@ impl<W: World> Agent<'_, W> {
             .goal
             .contains(self.now.state_type);
         observer.terminated(node, at_goal);
-        if self.model.cool_on == CoolOn::Goal && !at_goal {
+        if self.settings.cool_on == CoolOn::Goal && !at_goal {
             return;
         }
         if let Some(values) = &mut self.mind.values[node] {
-            let cooled = values.temperature * self.model.temperature_decrease as f32;
-            values.temperature = cooled.max(self.model.temperature_limit as f32);
+            let cooled = values.temperature * self.settings.temperature_decrease as f32;
+            values.temperature = cooled.max(self.settings.temperature_limit as f32);
         }
     }
 }
 
 /// The pseudo-reward of a transition (Thesis Definition 2.1): 0 into a goal state, minus
 /// the penalty into another terminal state; under `all`, into every state that is no goal.
-pub(super) fn pseudo_reward(model: &LearningModel, at_goal: bool, terminal: bool) -> f32 {
-    let punished = !at_goal && (terminal || model.pseudo_reward == PseudoReward::All);
+pub(super) fn pseudo_reward(settings: &LearningSettings, at_goal: bool, terminal: bool) -> f32 {
+    let punished = !at_goal && (terminal || settings.pseudo_reward == PseudoReward::All);
     if punished {
-        -model.pseudo_penalty as f32
+        -settings.pseudo_penalty as f32
     } else {
         0.0
     }

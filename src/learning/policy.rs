@@ -6,7 +6,7 @@ use super::hierarchy::Hierarchy;
 use super::skills::Skills;
 use super::verdict::Policy;
 use crate::random::Stream;
-use crate::scenario::LearningModel;
+use crate::scenario::LearningSettings;
 use crate::worlds::World;
 
 /// Sampled states of each type, in which policies are measured.
@@ -54,13 +54,13 @@ impl<P: Copy + AsRef<[f32]>> PolicySamples<P> {
         &self,
         world: &W,
         encoder: &Encoder,
-        model: &LearningModel,
+        settings: &LearningSettings,
         hierarchy: &Hierarchy,
         skills: &Skills,
         gate: &Gate,
     ) -> Result<SelectionProbabilities, Stopped> {
         let catalogue = world.catalogue();
-        let mut policy = Policy::new(catalogue, encoder, model, hierarchy, skills);
+        let mut policy = Policy::new(catalogue, encoder, settings, hierarchy, skills);
         let mut by_type = Vec::with_capacity(self.by_type.len());
         for (state_type, percepts) in catalogue.types().zip(&self.by_type) {
             let mut totals = vec![0.0; skills.all().len()];

@@ -5,7 +5,7 @@ use rand::RngExt;
 
 use super::exponential::exponentials;
 use crate::random::Stream;
-use crate::scenario::LearningModel;
+use crate::scenario::LearningSettings;
 
 /// Few children, few actions: more lanes would mostly be empty.
 const LANES: usize = 8;
@@ -36,10 +36,10 @@ pub struct Softmax {
 impl Softmax {
     /// The selection of a scenario.
     #[must_use]
-    pub fn new(model: &LearningModel) -> Self {
+    pub fn new(settings: &LearningSettings) -> Self {
         Self {
-            probability_limit: model.probability_limit as f32,
-            epsilon: model.epsilon as f32,
+            probability_limit: settings.probability_limit as f32,
+            epsilon: settings.epsilon as f32,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::features::Encoder;
 use super::linear::{ROW, Row, STRIDE, values};
-use crate::scenario::LearningModel;
+use crate::scenario::LearningSettings;
 use crate::worlds::{Catalogue, MapId, SubtaskId};
 
 /// The action values Q_prim of one primitive subtask (Thesis Eq. 3.1, 3.9).
@@ -142,8 +142,8 @@ impl Skills {
 
     /// Skills that have learned nothing.
     #[must_use]
-    pub fn untrained(catalogue: &Catalogue, model: &LearningModel) -> Self {
-        let initial = model.initial_parameter as f32;
+    pub fn untrained(catalogue: &Catalogue, settings: &LearningSettings) -> Self {
+        let initial = settings.initial_parameter as f32;
         let primitives = catalogue.primitives();
         Self {
             skills: primitives

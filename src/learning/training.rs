@@ -8,7 +8,7 @@ use super::linear::Row;
 use super::selection::{Softmax, uniform};
 use super::skills::Skill;
 use crate::random::Stream;
-use crate::scenario::LearningModel;
+use crate::scenario::LearningSettings;
 use crate::worlds::{Exploration, TrainingModel};
 use crate::worlds::{SubtaskId, World};
 
@@ -25,7 +25,7 @@ use crate::worlds::{SubtaskId, World};
 pub struct Trainee<'t, W: World> {
     world: &'t W,
     encoder: &'t Encoder,
-    model: &'t LearningModel,
+    settings: &'t LearningSettings,
     softmax: Softmax,
     skill: Skill,
     rng: Stream,
@@ -42,19 +42,19 @@ impl<'t, W: World> Trainee<'t, W> {
     pub fn new(
         world: &'t W,
         encoder: &'t Encoder,
-        model: &'t LearningModel,
+        settings: &'t LearningSettings,
         primitive: SubtaskId,
         rng: Stream,
     ) -> Self {
-        let initial = model.initial_parameter as f32;
+        let initial = settings.initial_parameter as f32;
         let skill = Skill::new(primitive, world.catalogue(), initial);
         Self {
             world,
             encoder,
-            model,
-            softmax: Softmax::new(model),
+            settings,
+            softmax: Softmax::new(settings),
             rng,
-            temperature: model.initial_temperature as f32,
+            temperature: settings.initial_temperature as f32,
             left: world
                 .training(primitive)
                 .map_or(0, |training| training.steps),
@@ -88,7 +88,7 @@ impl<'t, W: World> Trainee<'t, W> {
             }
             gate.pass(begun - self.left)?;
             let cooled = self.temperature * training.temperature_decrease as f32;
-            self.temperature = cooled.max(self.model.temperature_limit as f32);
+            self.temperature = cooled.max(self.settings.temperature_limit as f32);
         }
         Ok(())
     }
@@ -114,7 +114,7 @@ impl<'t, W: World> Trainee<'t, W> {
             let before = state.clone();
             let reward = self.world.step(&mut state, subtask, action, rng);
             let error = reward - values[action];
-            let step = self.model.learning_rate as f32 * error;
+            let step = self.settings.learning_rate as f32 * error;
             self.skill.learn(action, features, step);
             self.left -= 1;
             if !self.world.training_goes_on(subtask, &before, &mut state) {

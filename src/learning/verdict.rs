@@ -8,7 +8,7 @@ use super::plan::Plan;
 use super::selection::{Rule, Softmax};
 use super::situation::{Completion, Mind, Situation};
 use super::skills::Skills;
-use crate::scenario::{CompositeChoice, LearningModel};
+use crate::scenario::{CompositeChoice, LearningSettings};
 use crate::worlds::{Catalogue, StateType, SubtaskId, World};
 
 /// The policy of a hierarchy, to be asked about any state.
@@ -17,7 +17,7 @@ pub struct Policy<'r> {
     mind: Mind<'r>,
     now: Situation,
     softmax: Softmax,
-    model: &'r LearningModel,
+    settings: &'r LearningSettings,
     walk: Walk,
 }
 
@@ -54,7 +54,7 @@ impl<'r, W: World> Agent<'r, W> {
             now: Situation::new(&mind, self.world.catalogue().terminal()),
             walk: Walk::among(mind.skills.all().len()),
             softmax: self.softmax,
-            model: self.model,
+            settings: self.settings,
             mind,
         }
     }
@@ -66,7 +66,7 @@ impl<'r> Policy<'r> {
     pub fn new(
         catalogue: &Catalogue,
         encoder: &'r Encoder,
-        model: &'r LearningModel,
+        settings: &'r LearningSettings,
         hierarchy: &Hierarchy,
         skills: &Skills,
     ) -> Self {
@@ -80,8 +80,8 @@ impl<'r> Policy<'r> {
         Self {
             now: Situation::new(&mind, catalogue.terminal()),
             walk: Walk::among(skills.all().len()),
-            softmax: Softmax::new(model),
-            model,
+            softmax: Softmax::new(settings),
+            settings,
             mind,
         }
     }
@@ -129,7 +129,7 @@ impl<'r> Policy<'r> {
     /// it cannot act.
     pub fn choices(&mut self, node: usize) -> (Rule, Vec<Choice>) {
         self.mind
-            .choices(&mut self.now, node, self.softmax, self.model)
+            .choices(&mut self.now, node, self.softmax, self.settings)
     }
 
     /// Q_prim of every action of the primitive subtask at a place in the catalogue's
@@ -158,7 +158,7 @@ impl<'r> Policy<'r> {
     /// Puts the probabilities of a node's choices on top of those of the nodes above it.
     fn push_shares(&mut self, node: usize) {
         let choices = self.mind.plan.choices(node, self.now.state_type);
-        let random = self.model.composite_choice == CompositeChoice::Random;
+        let random = self.settings.composite_choice == CompositeChoice::Random;
         let Walk {
             shares,
             values,

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::features::Encoder;
 use super::plan::Plan;
 use super::situation::Situation;
-use crate::scenario::{CompletionBootstrap, LearningModel};
+use crate::scenario::{CompletionBootstrap, LearningSettings};
 use crate::worlds::{MapId, StateType};
 
 /// The states since the root's present child was invoked, most recent last
@@ -29,7 +29,7 @@ struct LoggedFeatures {
 }
 
 impl<P> Visited<P> {
-    pub(super) fn new(plan: &Plan, model: &LearningModel) -> Self {
+    pub(super) fn new(plan: &Plan, settings: &LearningSettings) -> Self {
         let mut features: Vec<LoggedFeatures> = Vec::new();
         for node in plan.nodes.iter().filter(|node| node.skill.is_none()) {
             let completion = &node.completion;
@@ -45,7 +45,8 @@ impl<P> Visited<P> {
         Self {
             types: Vec::new(),
             features,
-            percepts: (model.completion_bootstrap == CompletionBootstrap::AsPrinted).then(Vec::new),
+            percepts: (settings.completion_bootstrap == CompletionBootstrap::AsPrinted)
+                .then(Vec::new),
         }
     }
 

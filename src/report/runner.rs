@@ -14,9 +14,9 @@ use crate::lab::Keep;
 
 /// What happens to the runs of a study.
 #[derive(Debug)]
-pub enum Happening {
+pub enum StudyEvent {
     /// A run is begun, or gone on with.
-    Begun(RunId),
+    Started(RunId),
     /// A run has come to its end, now or before.
     Done {
         /// The run.
@@ -39,13 +39,13 @@ pub enum Happening {
 
 /// Does `runs`, `jobs` at a time, until all are done, have failed, or were stopped.
 /// `tell` is told what happens; it is called from the threads that do the runs.
-pub fn carry_out(
+pub fn run_study(
     study: &Study,
     runs: &[RunId],
     jobs: NonZeroUsize,
     keep: Keep,
     controls: &StudyControls,
-    tell: impl Fn(Happening) + Sync,
+    tell: impl Fn(StudyEvent) + Sync,
 ) {
     let waiting: Mutex<VecDeque<RunId>> = Mutex::new(runs.iter().copied().collect());
     let next = || {
@@ -54,7 +54,7 @@ pub fn carry_out(
     };
     let work = || {
         while let Some(run) = next() {
-            tell(Happening::Begun(run));
+            tell(StudyEvent::Started(run));
             let begun = Instant::now();
             let single = Single {
                 study,
@@ -63,14 +63,14 @@ pub fn carry_out(
                 controls,
             };
             match single.carry_out() {
-                Ok(fresh) => tell(Happening::Done {
+                Ok(fresh) => tell(StudyEvent::Done {
                     run,
                     fresh: Box::new(fresh),
                     took: begun.elapsed(),
                 }),
                 Err(SingleError::Stopped(_)) => {}
-                Err(error) if single.is_elsewhere(&error) => tell(Happening::Elsewhere(run)),
-                Err(error) => tell(Happening::Failed { run, error }),
+                Err(error) if single.is_elsewhere(&error) => tell(StudyEvent::Elsewhere(run)),
+                Err(error) => tell(StudyEvent::Failed { run, error }),
             }
         }
     };

@@ -13,7 +13,7 @@ use crate::lab::{Event, Follower, Life, News, Recording, RunError};
 /// How far a run is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Stage {
+pub enum RunState {
     /// Its winner has been evaluated.
     Done,
     /// Evolution is over, its winner is being evaluated or waits for that.
@@ -28,7 +28,7 @@ pub enum Stage {
     Unreadable,
 }
 
-impl Stage {
+impl RunState {
     /// All of them, in the order in which they are listed.
     pub const ALL: [Self; 6] = [
         Self::Done,
@@ -66,7 +66,7 @@ pub struct RunStatus {
     /// Its folder.
     pub folder: PathBuf,
     /// How far it is.
-    pub stage: Stage,
+    pub stage: RunState,
     /// Generations lived.
     pub generations: u64,
     /// Whether evolution converged; `false` too while it is not over.
@@ -120,7 +120,7 @@ fn waiting(study: &Study, run: RunId) -> RunStatus {
         number: run.number,
         name: study.name(&run),
         folder: study.run_folder(&run),
-        stage: Stage::Waiting,
+        stage: RunState::Waiting,
         generations: 0,
         converged: false,
         best_steps: Vec::new(),
@@ -168,7 +168,7 @@ impl Watched {
             false => self.follow(&mut status, now),
         };
         if let Err(trouble) = looked {
-            status.stage = Stage::Unreadable;
+            status.stage = RunState::Unreadable;
             status.trouble = Some(trouble);
         }
         self.status = status;
@@ -187,9 +187,9 @@ impl Watched {
         status.generations = follower.generations;
         status.best_steps.clone_from(&follower.best_steps);
         status.stage = match follower.life {
-            Life::Computing => Stage::Running,
-            Life::Over => Stage::Evolved,
-            Life::Absent | Life::Silent | Life::Stopped => Stage::Interrupted,
+            Life::Computing => RunState::Running,
+            Life::Over => RunState::Evolved,
+            Life::Absent | Life::Silent | Life::Stopped => RunState::Interrupted,
         };
         Ok(())
     }
@@ -203,8 +203,8 @@ fn read_results(status: &mut RunStatus) -> Result<(), SingleError> {
         status.best_steps = outcome.best.iter().map(|best| best.fitness).collect();
         let fresh = fresh(&status.folder)?;
         status.stage = match &fresh {
-            Some(_) => Stage::Done,
-            None => Stage::Evolved,
+            Some(_) => RunState::Done,
+            None => RunState::Evolved,
         };
         status.fresh_steps = fresh.map(|fresh| fresh.evaluation.mean);
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::document::markdown;
 use super::facts::Facts;
-use super::figures::{FigureError, Number, SourceError, study_figure};
+use super::figures::{FigureError, FigureNumber, SourceError, study_figure};
 use super::findings::Findings;
 use super::single::SingleError;
 use super::study::{Study, StudyError};
@@ -82,7 +82,7 @@ pub fn write_report(study: &Study) -> Result<Written, ReportError> {
         .into_iter()
         .map(|(name, bytes)| (name.to_owned(), bytes))
         .collect();
-    for number in Number::ALL.into_iter().filter(|_| !all.is_empty()) {
+    for number in FigureNumber::ALL.into_iter().filter(|_| !all.is_empty()) {
         let figure = study_figure(study, &all, number)?;
         if figure.panels.is_empty() {
             // Not every world has primitive subtasks that look at a single reading.

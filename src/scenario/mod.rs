@@ -24,7 +24,7 @@ mod settings;
 pub use embedded::{EMBEDDED, EMBEDDED_PLANS, Embedded};
 pub use error::ScenarioError;
 pub use settings::{
-    CompletionBootstrap, CompositeChoice, CoolOn, EvolutionModel, Inheritance, LearningModel,
+    CompletionBootstrap, CompositeChoice, CoolOn, EvolutionSettings, Inheritance, LearningSettings,
     PrimitiveLearning, PseudoReward, Selection, Variation,
 };
 
@@ -50,9 +50,9 @@ pub struct Scenario {
     pub world: WorldModel,
     /// How it learns.
     #[serde(default)]
-    pub learning: LearningModel,
+    pub learning: LearningSettings,
     /// How hierarchies evolve.
-    pub evolution: EvolutionModel,
+    pub evolution: EvolutionSettings,
 }
 
 impl Scenario {

@@ -3,7 +3,7 @@
 //! Those of the world's settings are the world's own. Rules on hierarchies need the
 //! world's subtasks and are checked where the hierarchies are read (`evolution`).
 
-use super::{EvolutionModel, LearningModel, PrimitiveLearning, Scenario};
+use super::{EvolutionSettings, LearningSettings, PrimitiveLearning, Scenario};
 use crate::rules::{Check, Problem};
 
 /// Bounds what a hostile file can make the program compute.
@@ -39,7 +39,7 @@ fn name(check: &mut Check, name: &str) {
     );
 }
 
-fn learning(check: &mut Check, learning: &LearningModel, trained: bool) {
+fn learning(check: &mut Check, learning: &LearningSettings, trained: bool) {
     let learns = trained || learning.primitive_learning != PrimitiveLearning::Frozen;
     check.rule(
         learns,
@@ -75,7 +75,7 @@ fn learning(check: &mut Check, learning: &LearningModel, trained: bool) {
     );
 }
 
-fn evolution(check: &mut Check, evolution: &EvolutionModel) {
+fn evolution(check: &mut Check, evolution: &EvolutionSettings) {
     let size = evolution.population_size;
     check.range("population_size", size, 4..=1024);
     let reproduced = evolution.reproduced;

@@ -8,7 +8,7 @@ use super::defaults as d;
 /// MAXQ-Q and action selection (Thesis 2.2.2, 3.1, Table 4.5).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct LearningModel {
+pub struct LearningSettings {
     /// Learning rate alpha.
     pub learning_rate: f64,
     /// Discount factor gamma per time step.
@@ -41,7 +41,7 @@ pub struct LearningModel {
     pub primitive_learning: PrimitiveLearning,
 }
 
-impl Default for LearningModel {
+impl Default for LearningSettings {
     fn default() -> Self {
         Self {
             learning_rate: d::LEARNING_RATE,
@@ -123,7 +123,7 @@ pub enum PrimitiveLearning {
 /// Genetic programming of hierarchies (Thesis 3.2, Algorithm 3.1, Table 4.7).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct EvolutionModel {
+pub struct EvolutionSettings {
     /// Individuals in a generation.
     #[serde(default = "population_size")]
     pub population_size: usize,

@@ -16,7 +16,7 @@ pub use subtasks::{DELIVERED, Row, row};
 use maxq_lab::hierarchy::Tree;
 use maxq_lab::learning::{Hierarchy, Skills, Update};
 use maxq_lab::scenario::{
-    CompletionBootstrap, CoolOn, LearningModel, PrimitiveLearning, PseudoReward,
+    CompletionBootstrap, CoolOn, LearningSettings, PrimitiveLearning, PseudoReward,
 };
 use maxq_lab::worlds::Catalogue;
 use maxq_lab::worlds::foraging::FeatureModel;
@@ -100,7 +100,7 @@ pub struct MaxqQ<'a> {
     tree: &'a Tree,
     /// The table row of each node.
     rows: Vec<Row>,
-    model: &'a LearningModel,
+    model: &'a LearningSettings,
     /// theta^C~ of each node's parent for it; one block a state type of the parent.
     pub theta_c_tilde: Vec<Vec<f64>>,
     /// theta^C of each node's parent for it.
@@ -125,7 +125,7 @@ impl<'a> MaxqQ<'a> {
         hierarchy: &'a Hierarchy,
         skills: &Skills,
         catalogue: &Catalogue,
-        model: &'a LearningModel,
+        model: &'a LearningSettings,
         reading: Reading,
     ) -> Self {
         let tree = hierarchy.tree();

@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use crate::cli::output;
 use crate::cli::progress;
 use crate::dashboard::Work;
-use crate::report::{Happening, Pace, RunId, Study};
+use crate::report::{Pace, RunId, Study, StudyEvent};
 
 /// Progress of the work on runs of a study.
 pub(super) struct Progress {
@@ -74,13 +74,13 @@ impl Progress {
     }
 
     /// Takes in what happened to a run.
-    pub(super) fn tell(&self, happening: &Happening) {
+    pub(super) fn tell(&self, happening: &StudyEvent) {
         let mut state = self.state();
         let (run, took) = match happening {
-            Happening::Begun(_) => return,
-            Happening::Done { run, took, .. } => (run, Some(*took)),
-            Happening::Elsewhere(run) => (run, None),
-            Happening::Failed { run, error } => {
+            StudyEvent::Started(_) => return,
+            StudyEvent::Done { run, took, .. } => (run, Some(*took)),
+            StudyEvent::Elsewhere(run) => (run, None),
+            StudyEvent::Failed { run, error } => {
                 let why = format!("error: {}: {error}", self.study.name(run));
                 if state.is_said {
                     self.bar.suspend(|| output::message(&why));

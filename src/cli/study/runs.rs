@@ -15,7 +15,7 @@ use crate::cli::show::{Outfit, Show};
 use crate::cli::signals::{Caught, Ended};
 use crate::dashboard::session::Exit;
 use crate::dashboard::terminal;
-use crate::report::{RunId, Stage, Study, StudyControls, carry_out, status};
+use crate::report::{RunId, RunState, Study, StudyControls, run_study, status};
 
 /// Carries out `study`.
 pub(super) fn main(args: &Args) -> Done {
@@ -36,7 +36,7 @@ pub(super) fn main(args: &Args) -> Done {
     let exit = thread::scope(|scope| {
         scope.spawn(|| {
             let tell = |happening| work.progress.tell(&happening);
-            carry_out(&study, &runs, jobs, args.keep, &work.controls, tell);
+            run_study(&study, &runs, jobs, args.keep, &work.controls, tell);
             work.progress.end();
         });
         let followed = follow(&study, &work, outfit, signals, &ended, args.on_hangup);
@@ -96,7 +96,7 @@ fn follow(
 /// many are not.
 fn tell_done(study: &Study, runs: &[RunId]) -> Result<usize, Failure> {
     let (now, all) = (status(study), runs.len());
-    let done = || now.iter().filter(|status| status.stage == Stage::Done);
+    let done = || now.iter().filter(|status| status.stage == RunState::Done);
     let is_whole = done().count() == now.len();
     let done = done().filter(|status| runs.contains(&status.run)).count();
     let folder = study.folder.display();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::cli::output::{self, Done, Format};
-use crate::report::{RunStatus, Stage, Study, status, write_report};
+use crate::report::{RunState, RunStatus, Study, status, write_report};
 
 /// Tell how far the runs of a study are.
 #[derive(Debug, clap::Args)]
@@ -69,7 +69,7 @@ pub(super) fn show(args: &StatusArgs) -> Done {
 
 fn describe(study: &Study, runs: &[RunStatus]) -> String {
     let count = |of: &[&RunStatus]| {
-        let stages = Stage::ALL.iter().map(|&stage| {
+        let stages = RunState::ALL.iter().map(|&stage| {
             let count = of.iter().filter(|status| status.stage == stage).count();
             (count, stage.word())
         });
@@ -106,7 +106,7 @@ fn describe(study: &Study, runs: &[RunStatus]) -> String {
     let under_way = |status: &&RunStatus| {
         matches!(
             status.stage,
-            Stage::Running | Stage::Interrupted | Stage::Unreadable
+            RunState::Running | RunState::Interrupted | RunState::Unreadable
         )
     };
     for status in runs.iter().filter(under_way) {

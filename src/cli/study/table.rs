@@ -17,7 +17,7 @@ use crate::dashboard::terminal::Terminal;
 use crate::dashboard::{RunRow, RunsNews, Standing};
 use crate::lab::specimen::bench;
 use crate::lab::{Life, Recording, Watch};
-use crate::report::{RunStatus, Stage, StatusWatch, Study, course};
+use crate::report::{RunState, RunStatus, StatusWatch, Study, course};
 
 /// Time between two looks at the study's folder, at least.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
@@ -124,7 +124,7 @@ fn look(
 ) -> RunsNews {
     let begun = Instant::now();
     let rows = now.into_iter().map(|status| {
-        let is_over = matches!(status.stage, Stage::Done | Stage::Evolved);
+        let is_over = matches!(status.stage, RunState::Done | RunState::Evolved);
         if !is_over {
             past.remove(&status.number);
         } else if !past.contains_key(&status.number) && begun.elapsed() < PATIENCE {
@@ -154,12 +154,12 @@ fn row(
         seed: status.run.seed,
         standing: match status.stage {
             _ if failure.is_some() => Standing::Failed,
-            Stage::Done => Standing::Done,
-            Stage::Evolved => Standing::Evolved,
-            Stage::Running => Standing::Running,
-            Stage::Interrupted => Standing::BrokenOff,
-            Stage::Waiting => Standing::Waiting,
-            Stage::Unreadable => Standing::Unreadable,
+            RunState::Done => Standing::Done,
+            RunState::Evolved => Standing::Evolved,
+            RunState::Running => Standing::Running,
+            RunState::Interrupted => Standing::BrokenOff,
+            RunState::Waiting => Standing::Waiting,
+            RunState::Unreadable => Standing::Unreadable,
         },
         generations: status.generations,
         course: past.unwrap_or(status.best_steps),

@@ -17,7 +17,7 @@ pub use study::study_figure;
 
 /// The figures that there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Number {
+pub enum FigureNumber {
     /// Action values of the primitive subtasks over the angle to their target.
     F4_3,
     /// Hierarchies obtained.
@@ -32,7 +32,7 @@ pub enum Number {
     F4_10,
 }
 
-impl Number {
+impl FigureNumber {
     /// All of them.
     pub const ALL: [Self; 6] = [
         Self::F4_3,
@@ -57,7 +57,7 @@ impl Number {
     }
 }
 
-impl std::str::FromStr for Number {
+impl std::str::FromStr for FigureNumber {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::primitives::action_values;
-use super::{Chart, Figure, Number, Panel, Series, Sketch};
+use super::{Chart, Figure, FigureNumber, Panel, Series, Sketch};
 use crate::evolution::{Experiment, GenerationRecord, read_tree};
 use crate::lab::{
     Event, Recording, RunError, SetupError, WorldTask, departures, in_words, shell_word,
@@ -116,30 +116,30 @@ impl RunSource {
     ///
     /// # Errors
     /// When the run does not hold what the figure shows.
-    pub fn figure(&self, number: Number, format: &str) -> Result<Figure, SourceError> {
+    pub fn figure(&self, number: FigureNumber, format: &str) -> Result<Figure, SourceError> {
         let arguments = format!("--format {format} --figure {}", number.name());
         let (title, panels) = match number {
-            Number::F4_3 => (
+            FigureNumber::F4_3 => (
                 String::from("Action values of the primitive subtasks"),
                 self.action_values()?,
             ),
-            Number::F4_5 => (
+            FigureNumber::F4_5 => (
                 String::from("Hierarchy obtained"),
                 self.hierarchies(&[self.last()])?,
             ),
-            Number::F4_7 => (
+            FigureNumber::F4_7 => (
                 String::from("Structural difference to the best hierarchy"),
                 vec![Panel::Chart(self.differences())],
             ),
-            Number::F4_8 => (
+            FigureNumber::F4_8 => (
                 String::from("Performance of the better half of the population"),
                 vec![Panel::Chart(self.performance())],
             ),
-            Number::F4_9 => (
+            FigureNumber::F4_9 => (
                 String::from("The best hierarchy of selected generations"),
                 self.hierarchies(&self.selected())?,
             ),
-            Number::F4_10 => (
+            FigureNumber::F4_10 => (
                 String::from("Selection probabilities of the primitive subtasks"),
                 self.probabilities(),
             ),

@@ -2,7 +2,7 @@
 //! shows one.
 
 use super::run::{RunSource, Sketches, SourceError};
-use super::{Chart, Figure, Number, Panel, Series};
+use super::{Chart, Figure, FigureNumber, Panel, Series};
 use crate::lab::with_world;
 use crate::report::arm::Base;
 use crate::report::facts::{Facts, Moment};
@@ -25,29 +25,33 @@ const POINTS: usize = 41;
 ///
 /// # Errors
 /// When a run cannot be read.
-pub fn study_figure(study: &Study, all: &[Facts], number: Number) -> Result<Figure, SourceError> {
+pub fn study_figure(
+    study: &Study,
+    all: &[Facts],
+    number: FigureNumber,
+) -> Result<Figure, SourceError> {
     let view = View { study, all };
     let (title, panels, made_from) = match number {
-        Number::F4_7 => (
+        FigureNumber::F4_7 => (
             "Structural difference to the best",
             view.differences(),
             String::from(LINES),
         ),
-        Number::F4_8 => (
+        FigureNumber::F4_8 => (
             "Performance of the best and of the middle",
             view.performance(),
             String::from(LINES),
         ),
-        Number::F4_5 => (
+        FigureNumber::F4_5 => (
             "Most frequent final structures",
             view.frequent()?,
             String::new(),
         ),
-        Number::F4_3 | Number::F4_9 | Number::F4_10 => {
+        FigureNumber::F4_3 | FigureNumber::F4_9 | FigureNumber::F4_10 => {
             let (panels, runs) = view.typical_panels(number)?;
             let title = match number {
-                Number::F4_3 => "Action values of the primitive subtasks",
-                Number::F4_9 => "The best hierarchy of selected generations",
+                FigureNumber::F4_3 => "Action values of the primitive subtasks",
+                FigureNumber::F4_9 => "The best hierarchy of selected generations",
                 _ => "Selection probabilities of the primitive subtasks",
             };
             (
@@ -154,7 +158,10 @@ impl View<'_> {
     }
 
     /// The panels of typical runs, and their names.
-    fn typical_panels(&self, number: Number) -> Result<(Vec<Panel>, Vec<String>), SourceError> {
+    fn typical_panels(
+        &self,
+        number: FigureNumber,
+    ) -> Result<(Vec<Panel>, Vec<String>), SourceError> {
         let (mut panels, mut names) = (Vec::new(), Vec::new());
         for (index, scenario) in self.study.plan.scenarios.iter().enumerate() {
             let mut runs = self.runs(index, self.tested());
