@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::output::{self, Done, Failure, Format};
-use super::signals::Caught;
+use super::output::{self, CommandResult, Failure, Format};
+use super::signals::SignalWatcher;
 use crate::evolution::{Experiment, Workers};
 use crate::lab::{WorldTask, with_world};
 use crate::learning::Gate;
@@ -54,10 +54,14 @@ pub(super) trait Question {
 
 /// Computes the answer to a question in the world of `scenario` and prints it as `format`
 /// says. After a signal nothing is printed.
-pub(super) fn answer<Q: Question>(question: &Q, scenario: Scenario, format: Format) -> Done {
+pub(super) fn answer<Q: Question>(
+    question: &Q,
+    scenario: Scenario,
+    format: Format,
+) -> CommandResult {
     let gate = Arc::new(Gate::default());
     let stopping = Arc::clone(&gate);
-    let ended = Caught::now()?.then(move || stopping.stop())?;
+    let ended = SignalWatcher::now()?.then(move || stopping.stop())?;
     let asking = Asking {
         question,
         gate: &gate,

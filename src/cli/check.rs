@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use super::output::{self, Done, Format};
+use super::output::{self, CommandResult, Format};
 use crate::evolution::Experiment;
 use crate::lab::{WorldTask, with_world};
 use crate::report::Plan;
@@ -49,7 +49,7 @@ struct Report {
 }
 
 /// Carries out the command.
-pub(super) fn main(args: &Args) -> Done {
+pub(super) fn main(args: &Args) -> CommandResult {
     let report = |file: &String| match Plan::is_plan(file) {
         true => report_plan(file, &args.settings),
         false => report_scenario(file, &args.settings),

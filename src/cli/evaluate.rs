@@ -5,9 +5,9 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::answer::{Asked, Question, answer};
-use super::output::{Done, Failure, counted};
+use super::args::ScenarioArgs;
+use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
-use super::source::Source;
 use crate::evolution::{Experiment, read_tree};
 use crate::lab::{Protocol, Scored, departures, evaluate, in_words, with_changes};
 use crate::learning::Gate;
@@ -24,7 +24,7 @@ Example:
   maxq-lab evaluate environment-3 --tree '(Root Avoid Wander ApproachBattery ApproachNest)'")]
 pub(super) struct Args {
     #[command(flatten)]
-    source: Source,
+    scenario: ScenarioArgs,
 
     /// The hierarchy, as text: '(Root Wander ApproachBattery ApproachNest)'.
     #[arg(long)]
@@ -66,8 +66,8 @@ pub(super) struct Report {
 }
 
 /// Carries out the command.
-pub(super) fn main(args: Args) -> Done {
-    let (scenario, format) = (args.source.load()?, args.asked.format);
+pub(super) fn main(args: Args) -> CommandResult {
+    let (scenario, format) = (args.scenario.load()?, args.asked.format);
     answer(&args, scenario, format)
 }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::ValueEnum;
 
-use super::output::{self, Done, Failure};
+use super::output::{self, CommandResult, Failure};
 use crate::files::write_atomically;
 use crate::report::figures::{Figure, FigureNumber, RunSource, study_figure};
 use crate::report::{Study, read_facts, run_export, study_export};
@@ -63,7 +63,7 @@ enum ExportFormat {
 const COLUMNS: usize = 80;
 
 /// Carries out the command.
-pub(super) fn main(args: &Args) -> Done {
+pub(super) fn main(args: &Args) -> CommandResult {
     let text = match args.dir.join("study.json").is_file() {
         true => of_study(args)?,
         false => of_run(args)?,

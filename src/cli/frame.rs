@@ -5,9 +5,9 @@ use std::process::ExitCode;
 use std::str::FromStr;
 use std::time::Duration;
 
-use super::appearance::Appearance;
-use super::beginning::Beginning;
-use super::output::{self, Done};
+use super::args::StartArg;
+use super::dashboard::AppearanceArgs;
+use super::output::{self, CommandResult};
 use crate::dashboard::keys::Key;
 use crate::dashboard::{App, Desk, FrameFormat, Input, Mode, Still, ViewId, render};
 use crate::lab::Recording;
@@ -29,7 +29,7 @@ pub(super) struct Args {
     run_dir: PathBuf,
 
     #[command(flatten)]
-    beginning: Beginning,
+    start: StartArg,
 
     /// Columns and rows.
     #[arg(long, value_name = "WxH", default_value = "120x40")]
@@ -63,7 +63,7 @@ pub(super) struct Args {
     format: FrameFormat,
 
     #[command(flatten)]
-    appearance: Appearance,
+    appearance: AppearanceArgs,
 }
 
 /// Columns and rows of a frame.
@@ -91,7 +91,7 @@ impl FromStr for Size {
 }
 
 /// Carries out the command.
-pub(super) fn main(args: &Args) -> Done {
+pub(super) fn main(args: &Args) -> CommandResult {
     if !(0.0..=LONGEST).contains(&args.play) {
         let message = format!(
             "--play: found {}; allowed: 0 to {LONGEST} seconds",
@@ -110,7 +110,7 @@ pub(super) fn main(args: &Args) -> Done {
     let manifest = recording.manifest;
     let bench = bench(manifest.scenario, manifest.seed)?;
     let folder = args.run_dir.display().to_string();
-    let start = args.beginning.read(bench)?;
+    let start = args.start.read(bench)?;
     let app = App::new(Desk::new(bench, folder, Mode::Replay, look, key_map)).beginning_at(start);
     let mut still = Still::new(app, Archive::new(bench, &args.run_dir, None));
     let Size(columns, rows) = args.size;

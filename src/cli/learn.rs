@@ -6,9 +6,9 @@ use clap::ValueEnum;
 use serde::Serialize;
 
 use super::answer::{Asked, Question, answer};
-use super::output::{Done, Failure, counted};
+use super::args::ScenarioArgs;
+use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
-use super::source::Source;
 use crate::evolution::{Experiment, read_tree};
 use crate::lab::{
     Algorithm, Course, GivenPolicy, LearnError, LearnProtocol, Learned, Mean, ValueGrid,
@@ -32,7 +32,7 @@ Examples:
   maxq-lab learn taxi-fickle --algorithm maxq-q --repeats 30")]
 pub(super) struct Args {
     #[command(flatten)]
-    source: Source,
+    scenario: ScenarioArgs,
 
     /// How to learn.
     #[arg(long, value_enum)]
@@ -123,8 +123,8 @@ pub(super) struct Report {
 }
 
 /// Carries out the command.
-pub(super) fn main(args: Args) -> Done {
-    let (scenario, format) = (args.source.load()?, args.asked.format);
+pub(super) fn main(args: Args) -> CommandResult {
+    let (scenario, format) = (args.scenario.load()?, args.asked.format);
     for (option, is_there, algorithm) in [
         ("--tree", args.tree.is_some(), Name::MaxqQ),
         ("--policy", args.policy.is_some(), Name::Td0),

@@ -8,11 +8,11 @@ use std::time::Duration;
 
 use signal_hook::consts::SIGHUP;
 
-use super::how::{How, OnHangup};
-use super::output::{self, Done, Failure, Format, counted};
+use super::args::{ExecutionArgs, OnHangup};
+use super::dashboard::{DashboardArgs, DashboardSettings};
+use super::output::{self, CommandResult, Failure, Format, counted};
 use super::progress;
-use super::show::{Outfit, Show};
-use super::signals::{Caught, Ended};
+use super::signals::{SignalWatcher, Termination};
 use crate::dashboard::session::{Exit, Source};
 use crate::dashboard::terminal;
 use crate::hierarchy::{Glyphs, draw};
@@ -24,21 +24,26 @@ use crate::scenario::{Scenario, Selection};
 pub(super) const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The keys and looks of a dashboard, if there will be one.
-pub(super) fn outfit(how: &How) -> Result<Option<Outfit>, Failure> {
-    match how.headless || !Show::is_possible() {
+pub(super) fn dashboard(execution: &ExecutionArgs) -> Result<Option<DashboardSettings>, Failure> {
+    match execution.headless || !DashboardArgs::is_possible() {
         true => Ok(None),
-        false => how.show.outfit().map(Some),
+        false => execution.dashboard.settings().map(Some),
     }
 }
 
 /// Follows a run to its end and reports its result. Signals were caught before the run
 /// began, so that none falls between.
-pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &How) -> Done {
-    let ended = Ended::default();
+pub(super) fn follow(
+    run: Run,
+    dashboard: Option<DashboardSettings>,
+    signals: SignalWatcher,
+    execution: &ExecutionArgs,
+) -> CommandResult {
+    let ended = Termination::default();
     // There is a line that can drop. Without one SIGHUP asks the program to end.
-    let survives = how.on_hangup == OnHangup::Detach && terminal::is_attached();
-    let exit = match outfit {
-        Some(outfit) => match show(&run, outfit, &signals) {
+    let survives = execution.on_hangup == OnHangup::Detach && terminal::is_attached();
+    let exit = match dashboard {
+        Some(dashboard) => match show(&run, dashboard, &signals) {
             Ok(exit) => Some(exit),
             Err(failure) => {
                 run.controls.stop();
@@ -49,7 +54,7 @@ pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &Ho
         None => None,
     };
     // Nobody could let a run go on that waits.
-    if goes_on(exit, &ended, how.on_hangup, || run.controls.resume()) {
+    if goes_on(exit, &ended, execution.on_hangup, || run.controls.resume()) {
         headless(&run, signals, &ended, survives)?;
     } else {
         if exit == Some(Exit::Left) {
@@ -62,12 +67,12 @@ pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &Ho
     if let (Some(Exit::Signal(signal)), true) = (exit, outcome.stopped) {
         end_within(PATIENCE, 128 + signal)?;
     }
-    match how.format {
+    match execution.format {
         Format::Json => output::json(&outcome)?,
         Format::Text => output::text(&describe(&outcome, &scenario)?)?,
     }
     if outcome.stopped && exit == Some(Exit::Detached) {
-        return hand_over(&outcome, how);
+        return hand_over(&outcome, execution);
     }
     if outcome.stopped {
         let folder = &outcome.run_dir;
@@ -82,17 +87,17 @@ pub(super) fn follow(run: Run, outfit: Option<Outfit>, signals: Caught, how: &Ho
     }
 }
 
-fn show(run: &Run, outfit: Outfit, signals: &Caught) -> Result<Exit, Failure> {
+fn show(run: &Run, dashboard: DashboardSettings, signals: &SignalWatcher) -> Result<Exit, Failure> {
     let what = bench(run.scenario.clone(), run.seed)?;
     let source = Source::live(&run.events, &run.controls);
-    outfit.show(what, &run.folder, source, signals)
+    dashboard.show(what, &run.folder, source, signals)
 }
 
 /// Whether work goes on without its dashboard that was left like this, or was not there;
 /// `resume` lets it, where the line dropped.
 pub(super) fn goes_on(
     exit: Option<Exit>,
-    ended: &Ended,
+    ended: &Termination,
     on_hangup: OnHangup,
     resume: impl FnOnce(),
 ) -> bool {
@@ -117,7 +122,12 @@ pub(super) fn goes_on(
 
 /// Follows a run to its end without a dashboard, and through the drop of the line if it
 /// `survives` that.
-fn headless(run: &Run, signals: Caught, ended: &Ended, survives: bool) -> Result<(), Failure> {
+fn headless(
+    run: &Run,
+    signals: SignalWatcher,
+    ended: &Termination,
+    survives: bool,
+) -> Result<(), Failure> {
     let controls = run.controls.clone();
     signals.stop(ended, survives, move || controls.stop())?;
     let evolution = &run.scenario.evolution;
@@ -139,10 +149,10 @@ pub(super) fn end_within(time: Duration, code: i32) -> Result<(), Failure> {
 }
 
 /// Lets another process without a terminal go on with a run that was stopped.
-fn hand_over(outcome: &Outcome, how: &How) -> Done {
+fn hand_over(outcome: &Outcome, execution: &ExecutionArgs) -> CommandResult {
     let folder = &outcome.run_dir;
     let mut command = Command::new(std::env::current_exe()?);
-    command.args(how.resume_headless());
+    command.args(execution.resume_headless());
     command.arg("--").arg(Path::new(folder));
     // A job of its own: what the shell does to its jobs is not meant for it.
     command.process_group(0);

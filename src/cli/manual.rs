@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 
 use super::Cli;
-use super::output::{self, Done};
+use super::output::{self, CommandResult};
 
 /// Print completions for a shell.
 #[derive(Debug, clap::Args)]
@@ -29,7 +29,7 @@ Example:
 pub(super) struct ManualArgs {}
 
 /// Carries out `completions`.
-pub(super) fn completions(args: &CompletionArgs) -> Done {
+pub(super) fn completions(args: &CompletionArgs) -> CommandResult {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "maxq-lab", &mut script);
     output::raw(&script)?;
@@ -37,7 +37,7 @@ pub(super) fn completions(args: &CompletionArgs) -> Done {
 }
 
 /// Carries out `manual`: the page of the program, then those of its commands.
-pub(super) fn manual(_args: &ManualArgs) -> Done {
+pub(super) fn manual(_args: &ManualArgs) -> CommandResult {
     let mut command = Cli::command();
     command.build();
     let mut pages = Vec::new();

@@ -4,27 +4,21 @@
 //! standard error, progress only where that is a terminal.
 
 mod answer;
-mod appearance;
-mod beginning;
+mod args;
 mod check;
+mod dashboard;
 mod evaluate;
 mod export;
 mod frame;
-mod how;
 mod learn;
 mod live;
 mod manual;
 mod output;
 mod primitives;
 mod progress;
-mod replay;
-mod resume;
 mod run;
 mod scenarios;
-mod schema;
-mod show;
 mod signals;
-mod source;
 mod study;
 mod tree;
 mod watch;
@@ -65,9 +59,9 @@ Exit status:
 #[derive(Debug, Subcommand)]
 enum Command {
     Run(run::Args),
-    Resume(resume::Args),
+    Resume(run::ResumeArgs),
     Watch(watch::Args),
-    Replay(replay::Args),
+    Replay(watch::ReplayArgs),
     Frame(frame::Args),
     Evaluate(evaluate::Args),
     Learn(learn::Args),
@@ -77,7 +71,7 @@ enum Command {
     Tree(tree::Command),
     Primitives(primitives::Args),
     Check(check::Args),
-    Schema(schema::Args),
+    Schema(scenarios::SchemaArgs),
     Scenarios(scenarios::Args),
     Completions(manual::CompletionArgs),
     Manual(manual::ManualArgs),
@@ -92,9 +86,9 @@ pub fn main() -> ExitCode {
     };
     let done = match command {
         Command::Run(args) => run::main(args),
-        Command::Resume(args) => resume::main(&args),
+        Command::Resume(args) => run::resume_main(&args),
         Command::Watch(args) => watch::main(&args),
-        Command::Replay(args) => replay::main(&args),
+        Command::Replay(args) => watch::replay(&args),
         Command::Frame(args) => frame::main(&args),
         Command::Evaluate(args) => evaluate::main(args),
         Command::Learn(args) => learn::main(args),
@@ -103,7 +97,7 @@ pub fn main() -> ExitCode {
         Command::Tree(command) => tree::main(command),
         Command::Primitives(args) => primitives::main(args),
         Command::Check(args) => check::main(&args),
-        Command::Schema(args) => schema::main(&args),
+        Command::Schema(args) => scenarios::schema(&args),
         Command::Scenarios(args) => scenarios::main(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Manual(args) => manual::manual(&args),

@@ -24,7 +24,7 @@ impl<E: Display> From<E> for Failure {
 }
 
 /// What a command comes to.
-pub(super) type Done = Result<std::process::ExitCode, Failure>;
+pub(super) type CommandResult = Result<std::process::ExitCode, Failure>;
 
 /// How a command reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]

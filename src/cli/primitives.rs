@@ -6,8 +6,8 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::answer::{Asked, Question, answer};
-use super::output::{Done, Failure};
-use super::source::Source;
+use super::args::ScenarioArgs;
+use super::output::{CommandResult, Failure};
 use crate::evolution::Experiment;
 use crate::learning::Gate;
 use crate::worlds::Kind;
@@ -25,7 +25,7 @@ Examples:
   maxq-lab primitives environment-3 --seed 7 --format json | jq .primitives[0]")]
 pub(super) struct Args {
     #[command(flatten)]
-    source: Source,
+    scenario: ScenarioArgs,
 
     #[command(flatten)]
     asked: Asked,
@@ -58,8 +58,8 @@ struct Row {
 }
 
 /// Carries out the command.
-pub(super) fn main(args: Args) -> Done {
-    let (scenario, format) = (args.source.load()?, args.asked.format);
+pub(super) fn main(args: Args) -> CommandResult {
+    let (scenario, format) = (args.scenario.load()?, args.asked.format);
     answer(&args, scenario, format)
 }
 

@@ -1,13 +1,12 @@
-//! `maxq-lab run`: evolve hierarchies for a scenario.
+//! `maxq-lab run` and `maxq-lab resume`.
 
 use std::path::PathBuf;
 
-use super::how::How;
+use super::args::{ExecutionArgs, ScenarioArgs};
 use super::live;
-use super::output::Done;
-use super::signals::Caught;
-use super::source::Source;
-use crate::lab::start;
+use super::output::{self, CommandResult};
+use super::signals::SignalWatcher;
+use crate::lab::{Invocation, RunFolder, resume, start};
 
 /// Evolve hierarchies for a scenario.
 ///
@@ -29,7 +28,7 @@ Examples:
   maxq-lab run environment-3 --headless            no dashboard: a progress bar")]
 pub(super) struct Args {
     #[command(flatten)]
-    source: Source,
+    scenario: ScenarioArgs,
 
     /// Seed of all random streams: the same seed gives the same bits.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
@@ -48,12 +47,12 @@ pub(super) struct Args {
     force: bool,
 
     #[command(flatten)]
-    how: How,
+    execution: ExecutionArgs,
 }
 
 /// Carries out the command.
-pub(super) fn main(args: Args) -> Done {
-    let mut scenario = args.source.load()?;
+pub(super) fn main(args: Args) -> CommandResult {
+    let mut scenario = args.scenario.load()?;
     if let Some(generations) = args.generations {
         scenario.evolution.generation_limit = generations;
         scenario = scenario.checked("--generations")?;
@@ -61,8 +60,56 @@ pub(super) fn main(args: Args) -> Done {
     let folder = args.out.unwrap_or_else(|| {
         PathBuf::from("runs").join(format!("{}-seed{}", scenario.name, args.seed))
     });
-    let signals = Caught::now()?;
-    let outfit = live::outfit(&args.how)?;
-    let run = start(scenario, args.seed, &folder, &args.how.options(args.force))?;
-    live::follow(run, outfit, signals, &args.how)
+    let signals = SignalWatcher::now()?;
+    let dashboard = live::dashboard(&args.execution)?;
+    let run = start(
+        scenario,
+        args.seed,
+        &folder,
+        &args.execution.options(args.force),
+    )?;
+    live::follow(run, dashboard, signals, &args.execution)
+}
+
+/// Go on with a run that was stopped, or died.
+///
+/// The result is the same, bit for bit, as if the run had never been interrupted. With
+/// --generations a run that ended at its limit goes on to another limit. On a terminal a
+/// dashboard shows it, the past generations included.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab resume runs/environment-3-seed7
+  maxq-lab resume runs/environment-3-seed7 --generations 400        beyond its limit")]
+pub(super) struct ResumeArgs {
+    /// The run folder.
+    run_dir: PathBuf,
+
+    /// Another generation limit.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    generations: Option<u64>,
+
+    #[command(flatten)]
+    execution: ExecutionArgs,
+}
+
+/// Carries out the command.
+pub(super) fn resume_main(args: &ResumeArgs) -> CommandResult {
+    let signals = SignalWatcher::now()?;
+    let manifest = RunFolder::read_manifest(&args.run_dir)?;
+    let (then, now) = (manifest.started, Invocation::now(0));
+    if (&then.version, &then.commit) != (&now.version, &now.commit) {
+        output::message(&format!(
+            "note: the run was started by version {} ({}), this is {} ({}): the bits may differ from \
+             those of a run never interrupted",
+            then.version, then.commit, now.version, now.commit
+        ));
+    }
+    let dashboard = live::dashboard(&args.execution)?;
+    let run = resume(
+        &args.run_dir,
+        args.generations,
+        &args.execution.options(false),
+    )?;
+    live::follow(run, dashboard, signals, &args.execution)
 }

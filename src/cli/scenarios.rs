@@ -1,11 +1,12 @@
-//! `maxq-lab scenarios`: the embedded scenarios and plans.
+//! `maxq-lab scenarios` and `maxq-lab schema`.
 
 use std::path::Path;
 use std::process::ExitCode;
 
+use clap::ValueEnum;
 use serde::Serialize;
 
-use super::output::{self, Done, Format};
+use super::output::{self, CommandResult, Format};
 use crate::report::Plan;
 use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Scenario};
 
@@ -38,7 +39,7 @@ enum Kind {
 }
 
 /// Carries out the command.
-pub(super) fn main(args: &Args) -> Done {
+pub(super) fn main(args: &Args) -> CommandResult {
     if let Some(name) = &args.name {
         let embedded = EMBEDDED
             .iter()
@@ -88,4 +89,38 @@ fn rows() -> Result<Vec<Row>, Box<dyn std::error::Error>> {
         })
     });
     scenarios.chain(plans).collect()
+}
+
+/// Print the JSON Schema of scenario files, or of plans.
+///
+/// Editors use it to complete and check these files; 'maxq-lab check' also checks what a
+/// schema cannot say.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab schema > scenario.schema.json
+  maxq-lab schema --of plan > plan.schema.json")]
+pub(super) struct SchemaArgs {
+    /// What the schema is of.
+    #[arg(long, value_enum, default_value_t)]
+    of: FileKind,
+}
+
+/// A kind of file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum FileKind {
+    /// A scenario.
+    #[default]
+    Scenario,
+    /// The plan of a study.
+    Plan,
+}
+
+/// Carries out the command.
+pub(super) fn schema(args: &SchemaArgs) -> CommandResult {
+    output::json(&match args.of {
+        FileKind::Scenario => Scenario::schema(),
+        FileKind::Plan => Plan::schema(),
+    })?;
+    Ok(ExitCode::SUCCESS)
 }

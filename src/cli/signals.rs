@@ -13,18 +13,18 @@ use crate::dashboard::terminal;
 
 /// Signals that end the program, caught from now on; they wait to be heard.
 #[derive(Debug)]
-pub(super) struct Caught {
+pub(super) struct SignalWatcher {
     /// The signals, in the order in which they came.
     pub(super) heard: Receiver<i32>,
 }
 
 /// The signal that ended the program.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Ended {
+pub(super) struct Termination {
     signal: Arc<AtomicI32>,
 }
 
-impl Caught {
+impl SignalWatcher {
     /// Catches SIGINT, SIGTERM and SIGHUP; a second SIGINT or SIGTERM ends the program at
     /// once, which loses no more than a crash would: nothing. SIGHUP comes twice when a line
     /// drops, from the system and from the shell, and means the same both times.
@@ -56,7 +56,7 @@ impl Caught {
     /// a line that drops, SIGHUP lets go of the terminal instead.
     pub(super) fn stop(
         self,
-        ended: &Ended,
+        ended: &Termination,
         survives: bool,
         stop: impl Fn() + Send + 'static,
     ) -> Result<(), Failure> {
@@ -79,8 +79,8 @@ impl Caught {
     }
 
     /// Calls `stop` on the first signal, the one that waits already if there is one.
-    pub(super) fn then(self, stop: impl FnOnce() + Send + 'static) -> Result<Ended, Failure> {
-        let ended = Ended::default();
+    pub(super) fn then(self, stop: impl FnOnce() + Send + 'static) -> Result<Termination, Failure> {
+        let ended = Termination::default();
         let first = ended.clone();
         thread::Builder::new()
             .name(String::from("ending"))
@@ -94,7 +94,7 @@ impl Caught {
     }
 }
 
-impl Ended {
+impl Termination {
     /// A signal ended the program.
     pub(super) fn by(&self, signal: i32) {
         self.signal.store(signal, Ordering::SeqCst);

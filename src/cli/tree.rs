@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::json;
 
-use super::output::{self, Done, Failure, Format, counted};
+use super::output::{self, CommandResult, Failure, Format, counted};
 use crate::evolution::{Experiment, read_tree};
 use crate::hierarchy::{Glyphs, Summary, Tree, draw, structural_difference, to_dot, to_text};
 use crate::lab::{WorldTask, with_world};
@@ -43,7 +43,7 @@ pub(super) enum Command {
         /// The other hierarchy.
         b: String,
         #[command(flatten)]
-        how: How,
+        format: TreeFormat,
     },
     /// Write a hierarchy as Graphviz DOT.
     Dot {
@@ -60,25 +60,25 @@ pub(super) struct One {
     /// The hierarchy.
     tree: String,
     #[command(flatten)]
-    how: How,
+    format: TreeFormat,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct How {
+pub(super) struct TreeFormat {
     /// The scenario whose subtasks and rules apply.
     #[arg(long, default_value = "environment-1")]
     scenario: String,
-    /// How to report.
+    /// TreeFormat to report.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
 /// Carries out the command.
-pub(super) fn main(command: Command) -> Done {
+pub(super) fn main(command: Command) -> CommandResult {
     match command {
-        Command::Show(One { tree, how }) => show(&tree, &how)?,
-        Command::Check(One { tree, how }) => check(&tree, &how)?,
-        Command::Diff { a, b, how } => difference(&a, &b, &how)?,
+        Command::Show(One { tree, format }) => show(&tree, &format)?,
+        Command::Check(One { tree, format }) => check(&tree, &format)?,
+        Command::Diff { a, b, format } => difference(&a, &b, &format)?,
         Command::Dot { tree, scenario } => {
             let scenario = Scenario::load(&scenario)?;
             output::text(&with_tree(&scenario, &tree, to_dot)?)?;
@@ -87,15 +87,15 @@ pub(super) fn main(command: Command) -> Done {
     Ok(ExitCode::SUCCESS)
 }
 
-fn show(text: &str, how: &How) -> Result<(), Failure> {
-    let scenario = Scenario::load(&how.scenario)?;
+fn show(text: &str, format: &TreeFormat) -> Result<(), Failure> {
+    let scenario = Scenario::load(&format.scenario)?;
     let (summary, drawing) = with_tree(&scenario, text, |tree, catalogue| {
         (
             Summary::of(tree, catalogue),
             draw(tree, catalogue, Glyphs::of_locale()),
         )
     })?;
-    if how.format == Format::Json {
+    if format.format == Format::Json {
         return output::json(&summary);
     }
     let by_type = summary.primitives_by_state_type.iter().enumerate();
@@ -112,10 +112,10 @@ fn show(text: &str, how: &How) -> Result<(), Failure> {
     ))
 }
 
-fn check(text: &str, how: &How) -> Result<(), Failure> {
-    let scenario = Scenario::load(&how.scenario)?;
+fn check(text: &str, format: &TreeFormat) -> Result<(), Failure> {
+    let scenario = Scenario::load(&format.scenario)?;
     let tree = with_tree(&scenario, text, to_text)?;
-    match how.format {
+    match format.format {
         Format::Json => output::json(&json!({ "valid": true, "tree": tree })),
         Format::Text => output::text(&format!("valid: {tree}\n")),
     }
@@ -128,15 +128,15 @@ struct Difference {
     difference: i64,
 }
 
-fn difference(a: &str, b: &str, how: &How) -> Result<(), Failure> {
-    let scenario = Scenario::load(&how.scenario)?;
+fn difference(a: &str, b: &str, format: &TreeFormat) -> Result<(), Failure> {
+    let scenario = Scenario::load(&format.scenario)?;
     let first = with_tree(&scenario, a, |tree, _| tree.clone())?;
     let report = with_tree(&scenario, b, |second, catalogue| Difference {
         a: to_text(&first, catalogue),
         b: to_text(second, catalogue),
         difference: structural_difference(&first, second, catalogue),
     })?;
-    match how.format {
+    match format.format {
         Format::Json => output::json(&report),
         Format::Text => output::text(&format!("{}\n", report.difference)),
     }

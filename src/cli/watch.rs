@@ -1,16 +1,17 @@
-//! `maxq-lab watch`: follow a run that another process computes.
+//! `maxq-lab watch` and `maxq-lab replay`.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crossbeam_channel::select;
 
-use super::output::{self, Done, Failure};
-use super::show::{Show, exit_code};
-use super::signals::Caught;
+use super::args::StartArg;
+use super::dashboard::{DashboardArgs, exit_code};
+use super::output::{self, CommandResult, Failure};
+use super::signals::SignalWatcher;
 use crate::dashboard::session::{Exit, Source};
 use crate::lab::specimen::bench;
-use crate::lab::{Life, Manifest, News, Watch};
+use crate::lab::{Life, Manifest, News, Recording, Watch};
 
 /// Time between two looks at the run folder.
 pub(super) const INTERVAL: Duration = Duration::from_millis(250);
@@ -31,19 +32,19 @@ pub(super) struct Args {
     run_dir: PathBuf,
 
     #[command(flatten)]
-    show: Show,
+    dashboard: DashboardArgs,
 }
 
 /// Carries out the command.
-pub(super) fn main(args: &Args) -> Done {
-    let (outfit, signals) = args.show.require_for_run(&args.run_dir)?;
+pub(super) fn main(args: &Args) -> CommandResult {
+    let (dashboard, signals) = args.dashboard.require_for_run(&args.run_dir)?;
     let watch = Watch::start(&args.run_dir, INTERVAL)?;
     let manifest = match wait_for_run(&args.run_dir, &watch, &signals)? {
         Found::Run(manifest) => *manifest,
         Found::Signal(signal) => return exit_code(Exit::Signal(signal)),
     };
     let what = bench(manifest.scenario, manifest.seed)?;
-    exit_code(outfit.show(what, &args.run_dir, Source::Watched(&watch), &signals)?)
+    exit_code(dashboard.show(what, &args.run_dir, Source::Watched(&watch), &signals)?)
 }
 
 /// What came first.
@@ -52,7 +53,7 @@ enum Found {
     Signal(i32),
 }
 
-fn wait_for_run(folder: &Path, watch: &Watch, signals: &Caught) -> Result<Found, Failure> {
+fn wait_for_run(folder: &Path, watch: &Watch, signals: &SignalWatcher) -> Result<Found, Failure> {
     loop {
         select! {
             recv(watch.news) -> news => match news {
@@ -71,4 +72,48 @@ fn wait_for_run(folder: &Path, watch: &Watch, signals: &Caught) -> Result<Found,
             },
         }
     }
+}
+
+/// Look at a run that has ended, was stopped, or died.
+///
+/// The dashboard is the one of 'maxq-lab run', over the events that the run left in its
+/// folder: travel through its generations, open any individual, compare two, follow a
+/// lineage back to the start. Nothing in the folder is changed. Press ? for the keys.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab replay runs/environment-1-seed1
+  maxq-lab replay runs/environment-1-seed1 --theme mono")]
+pub(super) struct ReplayArgs {
+    /// The run folder.
+    run_dir: PathBuf,
+
+    #[command(flatten)]
+    start: StartArg,
+
+    #[command(flatten)]
+    dashboard: DashboardArgs,
+}
+
+/// Carries out the command.
+pub(super) fn replay(args: &ReplayArgs) -> CommandResult {
+    let (dashboard, signals) = args.dashboard.require_for_run(&args.run_dir)?;
+    let recording = Recording::read(&args.run_dir)?;
+    let manifest = &recording.manifest;
+    let what = bench(manifest.scenario.clone(), manifest.seed)?;
+    let start = args.start.read(what)?;
+    let goes_on = recording.life == Life::Computing;
+    let exit = dashboard.starting_at(start).show(
+        what,
+        &args.run_dir,
+        Source::recorded(recording),
+        &signals,
+    )?;
+    if goes_on {
+        let folder = args.run_dir.display();
+        output::message(&format!(
+            "note: another process was working on this run; follow it with: maxq-lab watch {folder}"
+        ));
+    }
+    exit_code(exit)
 }

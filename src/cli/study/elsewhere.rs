@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::What;
-use crate::cli::output::{self, Done};
+use crate::cli::output::{self, CommandResult};
 use crate::lab::shell_word;
 use crate::report::merge;
 
@@ -56,7 +56,7 @@ pub(super) struct SlurmArgs {
     program: Program,
 }
 
-/// How the program is called where the runs are done.
+/// ExecutionArgs the program is called where the runs are done.
 #[derive(Debug, clap::Args)]
 struct Program {
     /// The program, as it is called where the runs are done.
@@ -84,7 +84,7 @@ pub(super) struct MergeArgs {
 }
 
 /// Carries out `study plan`.
-pub(super) fn plan(args: &PlanArgs) -> Done {
+pub(super) fn plan(args: &PlanArgs) -> CommandResult {
     let study = args.what.study()?;
     let folder = shell_word(&study.folder.display().to_string());
     let file = shell_word(&study.folder.join("study.json").display().to_string());
@@ -98,7 +98,7 @@ pub(super) fn plan(args: &PlanArgs) -> Done {
 }
 
 /// Carries out `study slurm`.
-pub(super) fn slurm(args: &SlurmArgs) -> Done {
+pub(super) fn slurm(args: &SlurmArgs) -> CommandResult {
     let study = args.what.study()?;
     let runs = study.runs().len();
     let least = runs.div_ceil(MAX_TASKS);
@@ -144,7 +144,7 @@ wait "$run"
 }
 
 /// Carries out `study merge`.
-pub(super) fn merge_parts(args: &MergeArgs) -> Done {
+pub(super) fn merge_parts(args: &MergeArgs) -> CommandResult {
     let runs = merge(&args.parts, &args.out)?;
     let (parts, out) = (args.parts.len(), args.out.display());
     output::text(&format!("{runs} runs of {parts} parts in {out}\n"))?;

@@ -5,15 +5,14 @@ mod progress;
 mod runs;
 mod status;
 mod table;
-mod watch;
 
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 
-use super::how::OnHangup;
-use super::output::{Done, Failure};
-use super::show::Show;
+use super::args::OnHangup;
+use super::dashboard::DashboardArgs;
+use super::output::{CommandResult, Failure};
 use crate::lab::Keep;
 use crate::report::{Arm, Base, Numbers, Plan, Study};
 use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Embedded};
@@ -77,7 +76,7 @@ pub(super) struct Args {
     on_hangup: OnHangup,
 
     #[command(flatten)]
-    show: Show,
+    dashboard: DashboardArgs,
 }
 
 /// A study: what to run and where.
@@ -175,7 +174,7 @@ impl What {
 #[derive(Debug, Subcommand)]
 enum Command {
     Status(status::StatusArgs),
-    Watch(watch::WatchArgs),
+    Watch(status::WatchArgs),
     Report(status::ReportArgs),
     Plan(elsewhere::PlanArgs),
     Slurm(elsewhere::SlurmArgs),
@@ -183,10 +182,10 @@ enum Command {
 }
 
 /// Carries out the command.
-pub(super) fn main(args: &Args) -> Done {
+pub(super) fn main(args: &Args) -> CommandResult {
     match &args.command {
         Some(Command::Status(args)) => status::show(args),
-        Some(Command::Watch(args)) => watch::main(args),
+        Some(Command::Watch(args)) => status::watch(args),
         Some(Command::Report(args)) => status::report(args),
         Some(Command::Plan(args)) => elsewhere::plan(args),
         Some(Command::Slurm(args)) => elsewhere::slurm(args),

@@ -1,4 +1,4 @@
-//! How far this program's work on the runs of a study is: as a bar, and for the table.
+//! ExecutionArgs far this program's work on the runs of a study is: as a bar, and for the table.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -8,38 +8,38 @@ use std::thread;
 use super::Args;
 use super::progress::Progress;
 use super::table;
-use crate::cli::how::OnHangup;
+use crate::cli::args::OnHangup;
+use crate::cli::dashboard::{DashboardArgs, DashboardSettings};
 use crate::cli::live::{PATIENCE, end_within, goes_on};
-use crate::cli::output::{self, Done, Failure};
-use crate::cli::show::{Outfit, Show};
-use crate::cli::signals::{Caught, Ended};
+use crate::cli::output::{self, CommandResult, Failure};
+use crate::cli::signals::{SignalWatcher, Termination};
 use crate::dashboard::session::Exit;
 use crate::dashboard::terminal;
 use crate::report::{RunId, RunState, Study, StudyControls, run_study, status};
 
 /// Carries out `study`.
-pub(super) fn main(args: &Args) -> Done {
+pub(super) fn main(args: &Args) -> CommandResult {
     // What is wrong is told before anything is made.
     let runs = wanted(&args.what.planned()?, &args.only)?;
     let study = args.what.study()?;
-    let signals = Caught::now()?;
-    let outfit = match args.headless || !Show::is_possible() {
+    let signals = SignalWatcher::now()?;
+    let dashboard = match args.headless || !DashboardArgs::is_possible() {
         true => None,
-        false => Some(args.show.outfit()?),
+        false => Some(args.dashboard.settings()?),
     };
     let jobs = jobs(args.jobs);
     let work = Arc::new(OwnWork {
         controls: StudyControls::default(),
         progress: Progress::new(&study, &runs, jobs.get()),
     });
-    let ended = Ended::default();
+    let ended = Termination::default();
     let exit = thread::scope(|scope| {
         scope.spawn(|| {
             let tell = |happening| work.progress.tell(&happening);
             run_study(&study, &runs, jobs, args.keep, &work.controls, tell);
             work.progress.end();
         });
-        let followed = follow(&study, &work, outfit, signals, &ended, args.on_hangup);
+        let followed = follow(&study, &work, dashboard, signals, &ended, args.on_hangup);
         if followed.is_err() {
             work.controls.stop();
         }
@@ -65,16 +65,16 @@ struct OwnWork {
 fn follow(
     study: &Study,
     work: &Arc<OwnWork>,
-    outfit: Option<Outfit>,
-    signals: Caught,
-    ended: &Ended,
+    dashboard: Option<DashboardSettings>,
+    signals: SignalWatcher,
+    ended: &Termination,
     on_hangup: OnHangup,
 ) -> Result<Option<Exit>, Failure> {
     // There is a line that can drop. Without one SIGHUP asks the program to end.
     let survives = on_hangup == OnHangup::Detach && terminal::is_attached();
     let own = Arc::clone(work);
-    let exit = match outfit {
-        Some(outfit) => Some(table::show(study, outfit, &signals, move || {
+    let exit = match dashboard {
+        Some(dashboard) => Some(table::show(study, dashboard, &signals, move || {
             own.progress.own()
         })?),
         None => None,
@@ -112,9 +112,9 @@ fn conclude(
     failed: usize,
     left: usize,
     controls: &StudyControls,
-    ended: &Ended,
+    ended: &Termination,
     exit: Option<Exit>,
-) -> Done {
+) -> CommandResult {
     if left > 0 && controls.is_stopped() {
         output::message("stopped; the same command goes on");
     } else if failed == 0 && left > 0 {

@@ -1,10 +1,13 @@
-//! `study status` and `study report`.
+//! `study status`, `study watch` and `study report`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::cli::output::{self, Done, Format};
+use super::progress::Own;
+use super::table;
+use crate::cli::dashboard::{DashboardArgs, exit_code};
+use crate::cli::output::{self, CommandResult, Format};
 use crate::report::{RunState, RunStatus, Study, status, write_report};
 
 /// Tell how far the runs of a study are.
@@ -17,7 +20,7 @@ pub(super) struct StatusArgs {
     /// The folder of the study.
     dir: PathBuf,
 
-    /// How to report.
+    /// ExecutionArgs to report.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -35,13 +38,13 @@ pub(super) struct ReportArgs {
     /// The folder of the study.
     dir: PathBuf,
 
-    /// How to print it.
+    /// ExecutionArgs to print it.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
 /// Carries out `study report`.
-pub(super) fn report(args: &ReportArgs) -> Done {
+pub(super) fn report(args: &ReportArgs) -> CommandResult {
     let written = write_report(&Study::open(&args.dir)?)?;
     match args.format {
         Format::Json => output::json(&written.findings)?,
@@ -57,7 +60,7 @@ pub(super) fn report(args: &ReportArgs) -> Done {
 }
 
 /// Carries out `study status`.
-pub(super) fn show(args: &StatusArgs) -> Done {
+pub(super) fn show(args: &StatusArgs) -> CommandResult {
     let study = Study::open(&args.dir)?;
     let runs = status(&study);
     match args.format {
@@ -123,4 +126,31 @@ fn describe(study: &Study, runs: &[RunStatus]) -> String {
         lines.push(format!("  {name}: {word}, {detail}"));
     }
     lines.join("\n") + "\n"
+}
+
+/// Follow the runs of a study, and open any of them.
+///
+/// A table of the runs: how each stands, its generation, the best fitness and its course.
+/// Enter opens a run in the dashboard, as a replay if it is over or broken off, watched if it
+/// goes on; q comes back. Folders are read once a second, never written or locked: the study
+/// may be done by this machine or by others. Press ? for the keys.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  maxq-lab study watch studies/thesis
+  maxq-lab study watch /shared/studies/thesis --fps 0.2    look every 5 seconds")]
+pub(super) struct WatchArgs {
+    /// The folder of the study.
+    dir: PathBuf,
+
+    #[command(flatten)]
+    dashboard: DashboardArgs,
+}
+
+/// Carries out `study watch`.
+pub(super) fn watch(args: &WatchArgs) -> CommandResult {
+    let study = Study::open(&args.dir)?;
+    let instead = format!("maxq-lab study status {}", args.dir.display());
+    let (dashboard, signals) = args.dashboard.require(&instead)?;
+    exit_code(table::show(&study, dashboard, &signals, Own::default)?)
 }

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::progress::Own;
+use crate::cli::dashboard::DashboardSettings;
 use crate::cli::output::Failure;
-use crate::cli::show::Outfit;
-use crate::cli::signals::Caught;
+use crate::cli::signals::SignalWatcher;
 use crate::cli::watch::INTERVAL;
 use crate::dashboard::session::{Exit, RunsExit, RunsSession, Source};
 use crate::dashboard::terminal::Terminal;
@@ -30,16 +30,16 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// program does on them.
 pub(super) fn show(
     study: &Study,
-    mut outfit: Outfit,
-    signals: &Caught,
+    mut dashboard: DashboardSettings,
+    signals: &SignalWatcher,
     own: impl Fn() -> Own + Send + 'static,
 ) -> Result<Exit, Failure> {
     let runs = study.runs();
     let folder = study.folder.display().to_string();
-    let mut table = outfit.table(study.plan.name.clone(), folder);
-    let interval = outfit.period().max(BETWEEN_LOOKS);
+    let mut table = dashboard.table(study.plan.name.clone(), folder);
+    let interval = dashboard.period().max(BETWEEN_LOOKS);
     let looks = Looks::start(study.clone(), interval, own)?;
-    let mut terminal = outfit.terminal()?;
+    let mut terminal = dashboard.terminal()?;
     loop {
         let session = RunsSession::new(&mut table, &mut terminal, &looks.news);
         let place = match session.run(&signals.heard)? {
@@ -49,8 +49,8 @@ pub(super) fn show(
         let Some(run) = runs.get(place) else {
             continue;
         };
-        outfit.wear(table.look().clone());
-        match open(&study.run_folder(run), &outfit, &mut terminal, signals) {
+        dashboard.wear(table.look().clone());
+        match open(&study.run_folder(run), &dashboard, &mut terminal, signals) {
             Ok(Exit::Left | Exit::Detached) => {}
             Ok(exit) => return Ok(exit),
             Err(Failure::Message(message)) => table.say(message),
@@ -62,9 +62,9 @@ pub(super) fn show(
 /// Opens a run in the dashboard.
 fn open(
     folder: &Path,
-    outfit: &Outfit,
+    dashboard: &DashboardSettings,
     terminal: &mut Terminal,
-    signals: &Caught,
+    signals: &SignalWatcher,
 ) -> Result<Exit, Failure> {
     let recording = Recording::read(folder)?;
     let manifest = &recording.manifest;
@@ -77,7 +77,7 @@ fn open(
         Some(watch) => Source::Watched(watch),
         None => Source::recorded(recording),
     };
-    let session = outfit.session(what, folder, source, terminal)?;
+    let session = dashboard.session(what, folder, source, terminal)?;
     Ok(session.within().run(&signals.heard)?)
 }
 

@@ -1,27 +1,28 @@
 //! The dashboard as the command line asks for it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use clap::Args;
 use signal_hook::consts::SIGHUP;
 
-use super::appearance::Appearance;
-use super::output::{Done, Failure};
-use super::signals::Caught;
+use super::output::{CommandResult, Failure};
+use super::signals::SignalWatcher;
 use crate::dashboard::keys::KeyMap;
-use crate::dashboard::look::Look;
+use crate::dashboard::look::{Look, Signs, Theme};
 use crate::dashboard::session::{Exit, Session, Source};
 use crate::dashboard::terminal::{Terminal, is_terminal};
-use crate::dashboard::{App, Desk, Mode, RunsTable};
+use crate::dashboard::{App, Config, Desk, Mode, RunsTable};
+use crate::hierarchy::Glyphs;
 use crate::lab::specimen::{Archive, Bench, Start};
 
 /// How the dashboard looks.
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Dashboard")]
-pub(super) struct Show {
+pub(super) struct DashboardArgs {
     #[command(flatten)]
-    appearance: Appearance,
+    appearance: AppearanceArgs,
 
     /// Frames a second at most; 2 is enough to follow a run over a slow line.
     ///
@@ -41,7 +42,7 @@ fn frames(text: &str) -> Result<f64, String> {
     }
 }
 
-impl Show {
+impl DashboardArgs {
     /// Whether there is a terminal that can show a dashboard.
     pub(super) fn is_possible() -> bool {
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
@@ -51,7 +52,10 @@ impl Show {
     /// What a command needs that is nothing without a dashboard: keys and looks, and the
     /// signals from now on. Where there is no terminal it fails, and names a command that
     /// does `instead`.
-    pub(super) fn require(&self, instead: &str) -> Result<(Outfit, Caught), Failure> {
+    pub(super) fn require(
+        &self,
+        instead: &str,
+    ) -> Result<(DashboardSettings, SignalWatcher), Failure> {
         if !Self::is_possible() {
             let message = format!(
                 "standard input or output is no terminal that a dashboard could be shown on; \
@@ -59,20 +63,23 @@ impl Show {
             );
             return Err(message.into());
         }
-        let signals = Caught::now()?;
-        Ok((self.outfit()?, signals))
+        let signals = SignalWatcher::now()?;
+        Ok((self.settings()?, signals))
     }
 
     /// As above, for a dashboard over the run in a folder.
-    pub(super) fn require_for_run(&self, folder: &Path) -> Result<(Outfit, Caught), Failure> {
+    pub(super) fn require_for_run(
+        &self,
+        folder: &Path,
+    ) -> Result<(DashboardSettings, SignalWatcher), Failure> {
         self.require(&format!("maxq-lab frame {}", folder.display()))
     }
 
     /// The person's keys and looks. What is wrong with them is told before anything is
     /// computed.
-    pub(super) fn outfit(&self) -> Result<Outfit, Failure> {
+    pub(super) fn settings(&self) -> Result<DashboardSettings, Failure> {
         let (look, keys) = self.appearance.load()?;
-        Ok(Outfit {
+        Ok(DashboardSettings {
             look,
             keys,
             fps: self.fps,
@@ -84,7 +91,7 @@ impl Show {
 
 /// A person's keys and looks, read and found good.
 #[derive(Debug)]
-pub(super) struct Outfit {
+pub(super) struct DashboardSettings {
     look: Look,
     keys: KeyMap,
     fps: f64,
@@ -93,9 +100,9 @@ pub(super) struct Outfit {
     start: Option<Start>,
 }
 
-impl Outfit {
+impl DashboardSettings {
     /// The same, with trials that begin there.
-    pub(super) fn beginning_at(self, start: Option<Start>) -> Self {
+    pub(super) fn starting_at(self, start: Option<Start>) -> Self {
         Self { start, ..self }
     }
 
@@ -105,7 +112,7 @@ impl Outfit {
         what: &'static dyn Bench,
         folder: &Path,
         source: Source<'_>,
-        signals: &Caught,
+        signals: &SignalWatcher,
     ) -> Result<Exit, Failure> {
         let mut terminal = self.terminal()?;
         let session = self.session(what, folder, source, &mut terminal)?;
@@ -156,12 +163,57 @@ impl Outfit {
 }
 
 /// The exit code of a session that left nothing behind to be done.
-pub(super) fn exit_code(exit: Exit) -> Done {
+pub(super) fn exit_code(exit: Exit) -> CommandResult {
     let code = |signal: i32| u8::try_from(128 + signal).map_or(ExitCode::FAILURE, ExitCode::from);
     match exit {
         Exit::Left | Exit::Detached => Ok(ExitCode::SUCCESS),
         Exit::HungUp => Ok(code(SIGHUP)),
         Exit::Signal(signal) => Ok(code(signal)),
         Exit::Panicked | Exit::Failed => Ok(ExitCode::FAILURE),
+    }
+}
+
+/// How the dashboard looks and which keys it has.
+#[derive(Clone, Debug, Args)]
+pub(super) struct AppearanceArgs {
+    /// Colours: dark, light, high-contrast, mono [default: the file's, mono where NO_COLOR
+    /// is set, else dark].
+    #[arg(long)]
+    theme: Option<String>,
+
+    /// Draw with plain ASCII characters [default: where the locale is not UTF-8].
+    #[arg(long)]
+    ascii: bool,
+
+    /// Keys and colours, a TOML file [default: maxq-lab/config.toml in $XDG_CONFIG_HOME or
+    /// ~/.config, if it is there].
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+}
+
+impl AppearanceArgs {
+    /// Reads the person's file and the environment.
+    pub(super) fn load(&self) -> Result<(Look, KeyMap), Failure> {
+        let default = || Config::default_path().filter(|path| path.exists());
+        let config = match self.config.clone().or_else(default) {
+            Some(path) => Config::load(&path)?,
+            None => Config::default(),
+        };
+        let glyphs = match self.ascii {
+            true => Glyphs::Ascii,
+            false => Glyphs::of_locale(),
+        };
+        let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let (themes, first) = match &self.theme {
+            Some(theme) => (config.themes, theme.clone()),
+            None if no_colour => (vec![Theme::mono()], String::from("mono")),
+            None => (config.themes, config.theme),
+        };
+        if !themes.iter().any(|theme| theme.name == first) {
+            let names: Vec<_> = themes.iter().map(|theme| theme.name.as_str()).collect();
+            let message = format!("--theme: found {first:?}; allowed: {}", names.join(", "));
+            return Err(Failure::Message(message));
+        }
+        Ok((Look::new(themes, &first, Signs::of(glyphs)), config.keys))
     }
 }
