@@ -15,7 +15,7 @@ use maxq_lab::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Trainee};
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::World;
-use maxq_lab::worlds::WorldModel;
+use maxq_lab::worlds::WorldSettings;
 use maxq_lab::worlds::foraging::ForagingWorld;
 
 const COMPLETE: &str = "(Root (Capture (FindBattery Avoid Wander) \
@@ -28,7 +28,7 @@ fn control_step(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(u64::from(STEPS)));
     for name in ["environment-1", "environment-2", "environment-3"] {
         let scenario = Scenario::load(name).expect("shipped");
-        let WorldModel::Foraging(model) = &scenario.world else {
+        let WorldSettings::Foraging(model) = &scenario.world else {
             panic!("a foraging scenario")
         };
         let world = ForagingWorld::new(model).expect("shipped");

@@ -181,7 +181,7 @@ fn a_world_is_known_in_its_own_folder_alone() {
 #[test]
 fn the_check_of_worlds_sees_what_it_should() {
     assert!(names("use crate::worlds::taxi::Passenger;", "taxi"));
-    assert!(names("WorldModel::FourRooms(model) =>", "four_rooms"));
+    assert!(names("WorldSettings::FourRooms(model) =>", "four_rooms"));
     assert!(names(
         "let world = FourRoomsWorld::new(model);",
         "four_rooms"

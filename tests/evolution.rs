@@ -26,7 +26,7 @@ use maxq_lab::evolution::{
 use maxq_lab::hierarchy::{Tree, parse};
 use maxq_lab::learning::{CompositeValues, Gate, Hierarchy, Skill, Skills};
 use maxq_lab::scenario::Scenario;
-use maxq_lab::worlds::WorldModel;
+use maxq_lab::worlds::WorldSettings;
 use maxq_lab::worlds::foraging::ForagingWorld;
 use maxq_lab::worlds::{Catalogue, World};
 use rand::RngExt;
@@ -45,7 +45,7 @@ fn still_scenario() -> Scenario {
 }
 
 fn foraging(scenario: &Scenario) -> ForagingWorld {
-    let WorldModel::Foraging(model) = &scenario.world else {
+    let WorldSettings::Foraging(model) = &scenario.world else {
         panic!("a foraging scenario")
     };
     ForagingWorld::new(model).unwrap()

@@ -20,16 +20,16 @@ mod walks;
 
 use maxq_lab::random::Stream;
 use maxq_lab::scenario::Scenario;
-use maxq_lab::worlds::WorldModel;
-use maxq_lab::worlds::foraging::ForagingModel;
+use maxq_lab::worlds::WorldSettings;
+use maxq_lab::worlds::foraging::ForagingSettings;
 use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld};
 use maxq_lab::worlds::{SubtaskId, World};
 use rand::RngExt;
 
 const SCENARIOS: [&str; 4] = ["environment-1", "environment-2", "environment-3", "smoke"];
 
-fn model(scenario: &str) -> ForagingModel {
-    let WorldModel::Foraging(model) = Scenario::load(scenario).unwrap().world else {
+fn model(scenario: &str) -> ForagingSettings {
+    let WorldSettings::Foraging(model) = Scenario::load(scenario).unwrap().world else {
         panic!("a foraging scenario")
     };
     *model

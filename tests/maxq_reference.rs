@@ -214,7 +214,7 @@ fn when_bootstrap_values_are_read_matters_only_where_a_trial_is_cut_off() {
 fn the_catalogue_is_that_of_the_tables() {
     let lab = Lab::new("environment-1", &[]);
     for subtask in &lab.experiment.catalogue().subtasks {
-        let row = row(subtask.name);
+        let row = row(&subtask.name);
         let numbers = |types: maxq_lab::worlds::StateTypes| -> Vec<usize> {
             types.iter().map(|t| t.number()).collect()
         };

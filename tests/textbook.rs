@@ -27,7 +27,7 @@ use maxq_lab::lab::{Algorithm, LearnProtocol, Learned, learn};
 use maxq_lab::learning::Gate;
 use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::World;
-use maxq_lab::worlds::WorldModel;
+use maxq_lab::worlds::WorldSettings;
 use maxq_lab::worlds::cliff::CliffWorld;
 use maxq_lab::worlds::four_rooms::FourRoomsWorld;
 use maxq_lab::worlds::taxi::TaxiWorld;
@@ -40,7 +40,7 @@ fn scenario(name: &str, settings: &[&str]) -> Scenario {
 
 fn taxi(name: &str, settings: &[&str]) -> Experiment<TaxiWorld> {
     let scenario = scenario(name, settings);
-    let WorldModel::Taxi(model) = &scenario.world else {
+    let WorldSettings::Taxi(model) = &scenario.world else {
         panic!("a taxi scenario")
     };
     let world = TaxiWorld::new(model).unwrap();
@@ -49,7 +49,7 @@ fn taxi(name: &str, settings: &[&str]) -> Experiment<TaxiWorld> {
 
 fn cliff(settings: &[&str]) -> Experiment<CliffWorld> {
     let scenario = scenario("cliff", settings);
-    let WorldModel::Cliff(model) = &scenario.world else {
+    let WorldSettings::Cliff(model) = &scenario.world else {
         panic!("a cliff scenario")
     };
     let world = CliffWorld::new(model).unwrap();
@@ -58,7 +58,7 @@ fn cliff(settings: &[&str]) -> Experiment<CliffWorld> {
 
 fn four_rooms(settings: &[&str]) -> Experiment<FourRoomsWorld> {
     let scenario = scenario("four-rooms", settings);
-    let WorldModel::FourRooms(model) = &scenario.world else {
+    let WorldSettings::FourRooms(model) = &scenario.world else {
         panic!("a scenario of four rooms")
     };
     let world = FourRoomsWorld::new(model).unwrap();

@@ -151,7 +151,7 @@ impl Question for Args {
     ) -> Result<Report, Failure> {
         let name = &experiment.scenario.name;
         let in_world = |error: LearnError| format!("{name}: {error}");
-        if experiment.world.finite().is_none() {
+        if experiment.world.mdp().is_none() {
             // Before a hierarchy is asked for that would not help.
             return Err(in_world(LearnError::NotFinite).into());
         }

@@ -41,7 +41,7 @@ pub(super) struct Report {
 
 #[derive(Serialize)]
 struct Primitive {
-    subtask: &'static str,
+    subtask: String,
     actions: Vec<String>,
     rows: Vec<Row>,
 }
@@ -100,7 +100,7 @@ impl Question for Args {
                 });
             let subtask = catalogue.subtask(skill.subtask);
             Primitive {
-                subtask: subtask.name,
+                subtask: subtask.name.clone(),
                 actions: match &subtask.kind {
                     Kind::Primitive { actions } => actions.clone(),
                     Kind::Composite { .. } => Vec::new(),

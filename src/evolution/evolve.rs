@@ -264,12 +264,8 @@ impl<'e, W: World> Evolution<'e, W> {
                     origin: individual.origin.clone(),
                     tree: summary.tree,
                     composites: summary.composites,
-                    primitives: owned(&summary.primitives),
-                    primitives_by_state_type: summary
-                        .primitives_by_state_type
-                        .iter()
-                        .map(|names| owned(names))
-                        .collect(),
+                    primitives: summary.primitives,
+                    primitives_by_state_type: summary.primitives_by_state_type,
                     fitness_steps: life.fitness(),
                     trials: life.scored.clone(),
                     difference_to_best: structural_difference(tree, best, catalogue),
@@ -351,8 +347,4 @@ fn first_population<W: World>(experiment: &Experiment<W>, seed: u64) -> Vec<Indi
         skills: None,
     });
     individuals.collect()
-}
-
-fn owned(names: &[&str]) -> Vec<String> {
-    names.iter().map(|&name| name.to_owned()).collect()
 }

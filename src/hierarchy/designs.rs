@@ -162,12 +162,12 @@ mod tests {
     use crate::random::{Purpose, stream};
     use crate::scenario::Scenario;
     use crate::worlds::foraging::ForagingWorld;
-    use crate::worlds::{World, WorldModel};
+    use crate::worlds::{World, WorldSettings};
     use std::collections::HashSet;
 
     fn foraging() -> ForagingWorld {
         let scenario = Scenario::load("environment-1").unwrap();
-        let WorldModel::Foraging(model) = &scenario.world else {
+        let WorldSettings::Foraging(model) = &scenario.world else {
             panic!("environment-1 is a foraging task");
         };
         ForagingWorld::new(model).unwrap()

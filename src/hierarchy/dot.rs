@@ -17,7 +17,7 @@ pub fn to_dot(tree: &Tree, catalogue: &Catalogue) -> String {
         } else {
             "box"
         };
-        let (name, active) = (subtask.name, subtask.active);
+        let (name, active) = (&subtask.name, subtask.active);
         // Writing to a string cannot fail.
         let _ = writeln!(
             dot,

@@ -17,9 +17,9 @@ pub struct Summary {
     /// Composite subtasks, the root counted.
     pub composites: usize,
     /// Distinct primitive subtasks, in the catalogue's order.
-    pub primitives: Vec<&'static str>,
+    pub primitives: Vec<String>,
     /// For each state type the primitive subtasks that can be selected in it.
-    pub primitives_by_state_type: Vec<Vec<&'static str>>,
+    pub primitives_by_state_type: Vec<Vec<String>>,
 }
 
 impl Summary {
@@ -45,7 +45,7 @@ impl Summary {
 }
 
 /// The primitive subtasks that the root can reach in a state type.
-fn selectable(tree: &Tree, catalogue: &Catalogue, state_type: StateType) -> Vec<&'static str> {
+fn selectable(tree: &Tree, catalogue: &Catalogue, state_type: StateType) -> Vec<String> {
     let able = able(tree, catalogue);
     let acts = |node: usize| able[node].contains(state_type);
     names(catalogue, |primitive| {
@@ -55,11 +55,11 @@ fn selectable(tree: &Tree, catalogue: &Catalogue, state_type: StateType) -> Vec<
     })
 }
 
-fn names(catalogue: &Catalogue, wanted: impl Fn(SubtaskId) -> bool) -> Vec<&'static str> {
+fn names(catalogue: &Catalogue, wanted: impl Fn(SubtaskId) -> bool) -> Vec<String> {
     let primitives = catalogue
         .primitives()
         .filter(|&primitive| wanted(primitive));
     primitives
-        .map(|primitive| primitive.name(catalogue))
+        .map(|primitive| primitive.name(catalogue).to_owned())
         .collect()
 }

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::tree::Tree;
-use crate::worlds::{Catalogue, SubtaskId};
+use crate::worlds::Catalogue;
 
 /// Longest text that is read, in bytes.
 pub const MAX_TEXT_BYTES: usize = 4096;
@@ -83,7 +83,7 @@ fn names(catalogue: &Catalogue) -> String {
     let names: Vec<_> = catalogue
         .subtasks
         .iter()
-        .map(|subtask| subtask.name)
+        .map(|subtask| subtask.name.as_str())
         .collect();
     format!("a subtask ({})", names.join(", "))
 }
@@ -111,7 +111,7 @@ pub fn to_text(tree: &Tree, catalogue: &Catalogue) -> String {
     write(
         tree,
         0,
-        &|node| catalogue.subtask(tree.subtask(node)).name,
+        &|node| tree.subtask(node).name(catalogue),
         &|children| children,
     )
 }
@@ -135,12 +135,7 @@ pub fn canonical(tree: &Tree, catalogue: &Catalogue) -> String {
         children.sort_unstable();
         children
     };
-    write(
-        tree,
-        0,
-        &|node| catalogue.subtask(tree.subtask(node)).name,
-        &sorted,
-    )
+    write(tree, 0, &|node| tree.subtask(node).name(catalogue), &sorted)
 }
 
 fn write<'c>(
@@ -157,13 +152,5 @@ fn write<'c>(
         name(node).to_owned()
     } else {
         format!("({} {})", name(node), children.join(" "))
-    }
-}
-
-impl SubtaskId {
-    /// The subtask's name in the given catalogue.
-    #[must_use]
-    pub fn name(self, catalogue: &Catalogue) -> &'static str {
-        catalogue.subtask(self).name
     }
 }

@@ -13,27 +13,27 @@ pub enum TypingError {
     #[error("the root is {found}; allowed: {root}")]
     NotRoot {
         /// The subtask found.
-        found: &'static str,
+        found: String,
         /// The subtask allowed.
-        root: &'static str,
+        root: String,
     },
     /// The root occurs further down.
     #[error("{root} stands below itself; allowed: only at the top")]
     RootBelow {
         /// The root subtask.
-        root: &'static str,
+        root: String,
     },
     /// A composite subtask has no children.
     #[error("{composite} has no children; allowed: at least one")]
     Childless {
         /// The composite subtask.
-        composite: &'static str,
+        composite: String,
     },
     /// A primitive subtask has children.
     #[error("{primitive} has children; allowed: none, it is a primitive subtask")]
     PrimitiveParent {
         /// The primitive subtask.
-        primitive: &'static str,
+        primitive: String,
     },
     /// A child's active states do not fit its parent's.
     #[error(
@@ -44,13 +44,13 @@ pub enum TypingError {
     )]
     NotAllowed {
         /// The child.
-        child: &'static str,
+        child: String,
         /// Its active state types.
         child_active: StateTypes,
         /// Whether the child is composite.
         composite: bool,
         /// The parent.
-        parent: &'static str,
+        parent: String,
         /// Its active state types.
         parent_active: StateTypes,
     },
@@ -58,7 +58,7 @@ pub enum TypingError {
     #[error("{composite} occurs more than once; allowed: every composite subtask at most once")]
     Repeated {
         /// The composite subtask.
-        composite: &'static str,
+        composite: String,
     },
     /// The tree has too many levels.
     #[error("the depth is {depth}; allowed: 2 to {maximum}, the root counted")]
@@ -93,8 +93,8 @@ pub fn check(tree: &Tree, catalogue: &Catalogue, maximum_depth: usize) -> Result
     let top = catalogue.subtask(tree.subtask(0));
     if tree.subtask(0) != SubtaskId::ROOT {
         return Err(TypingError::NotRoot {
-            found: top.name,
-            root: root.name,
+            found: top.name.clone(),
+            root: root.name.clone(),
         });
     }
     for node in 0..tree.nodes().len() {
@@ -127,19 +127,21 @@ fn check_node(tree: &Tree, catalogue: &Catalogue, node: usize) -> Result<(), Typ
     let childless = tree.children(node).next().is_none();
     if subtask.is_composite() && childless {
         return Err(TypingError::Childless {
-            composite: subtask.name,
+            composite: subtask.name.clone(),
         });
     }
     if !subtask.is_composite() && !childless {
         return Err(TypingError::PrimitiveParent {
-            primitive: subtask.name,
+            primitive: subtask.name.clone(),
         });
     }
     let Some(parent) = tree.nodes()[node].parent else {
         return Ok(());
     };
     if tree.subtask(node) == SubtaskId::ROOT {
-        return Err(TypingError::RootBelow { root: subtask.name });
+        return Err(TypingError::RootBelow {
+            root: subtask.name.clone(),
+        });
     }
     let parent = catalogue.subtask(tree.subtask(parent));
     let allowed = if subtask.is_composite() {
@@ -151,10 +153,10 @@ fn check_node(tree: &Tree, catalogue: &Catalogue, node: usize) -> Result<(), Typ
         return Ok(());
     }
     Err(TypingError::NotAllowed {
-        child: subtask.name,
+        child: subtask.name.clone(),
         child_active: subtask.active,
         composite: subtask.is_composite(),
-        parent: parent.name,
+        parent: parent.name.clone(),
         parent_active: parent.active,
     })
 }
@@ -165,7 +167,7 @@ fn check_repeats(tree: &Tree, catalogue: &Catalogue) -> Result<(), TypingError> 
         let subtask = catalogue.subtask(node.subtask);
         if subtask.is_composite() && std::mem::replace(&mut seen[node.subtask.index()], true) {
             return Err(TypingError::Repeated {
-                composite: subtask.name,
+                composite: subtask.name.clone(),
             });
         }
     }

@@ -12,7 +12,7 @@ use crate::evolution::{Experiment, Workers};
 use crate::learning::{Gate, Stopped};
 use crate::random::{Purpose, stream};
 use crate::worlds::World;
-use crate::worlds::finite::{FiniteModel, MAX_SWEEPS, PolicyTable};
+use crate::worlds::mdp::{MAX_SWEEPS, Mdp, PolicyTable};
 
 /// Sweeps for the value of a greedy policy, or four times as many as the optimal values took: one
 /// that has not come to an end after as many steps is far from optimal.
@@ -119,7 +119,7 @@ pub fn learn<W: World>(
     gate: &Gate,
     progress: impl Fn(usize) + Sync,
 ) -> Result<Learned, LearnError> {
-    let finite = experiment.world.finite().ok_or(LearnError::NotFinite)?;
+    let finite = experiment.world.mdp().ok_or(LearnError::NotFinite)?;
     if matches!(algorithm, Algorithm::QLearningRbf) && finite.gaussian.is_none() {
         return Err(LearnError::NoGaussians);
     }
@@ -161,7 +161,7 @@ pub fn learn<W: World>(
 
 /// What learners are held against.
 struct Exam<'f, P> {
-    finite: &'f FiniteModel<P>,
+    finite: &'f Mdp<P>,
     protocol: &'f LearnProtocol,
     discount: f64,
     /// The policy that TD(0) is given.
@@ -175,7 +175,7 @@ struct Exam<'f, P> {
 
 impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
     fn new(
-        finite: &'f FiniteModel<P>,
+        finite: &'f Mdp<P>,
         algorithm: &Algorithm,
         protocol: &'f LearnProtocol,
         discount: f64,

@@ -6,16 +6,16 @@ use crate::evolution::Experiment;
 use crate::learning::{Agent, Episode, Flat, FlatLesson, Gate, Policy, Skills, Stopped};
 use crate::random::Stream;
 use crate::worlds::World;
-use crate::worlds::finite::{FiniteModel, FiniteState, PolicyTable};
+use crate::worlds::mdp::{Mdp, MdpState, PolicyTable};
 
 /// Knows a value and a best action for states.
 pub(super) trait Learner<P> {
     /// The value of a state that is not terminal.
-    fn value(&mut self, state: &FiniteState<P>) -> f64;
+    fn value(&mut self, state: &MdpState<P>) -> f64;
 
-    /// The best action in a state, by its place in [`FiniteModel::actions`]; `None` where
+    /// The best action in a state, by its place in [`Mdp::actions`]; `None` where
     /// it can do nothing.
-    fn greedy(&mut self, state: &FiniteState<P>) -> Option<usize>;
+    fn greedy(&mut self, state: &MdpState<P>) -> Option<usize>;
 }
 
 /// A learner of any kind.
@@ -27,7 +27,7 @@ pub(super) enum AnyLearner<'e, W: World> {
 /// An agent, and its policy as it was after the last episode.
 pub(super) struct Pupil<'e, W: World> {
     agent: Agent<'e, W>,
-    finite: &'e FiniteModel<W::Percept>,
+    finite: &'e Mdp<W::Percept>,
     policy: Policy<'e>,
 }
 
@@ -35,7 +35,7 @@ impl<'e, W: World> AnyLearner<'e, W> {
     /// A learner that knows nothing; `policy` is what TD(0) evaluates.
     pub(super) fn new(
         experiment: &'e Experiment<W>,
-        finite: &'e FiniteModel<W::Percept>,
+        finite: &'e Mdp<W::Percept>,
         algorithm: &Algorithm,
         policy: Option<&PolicyTable>,
     ) -> Self {
@@ -97,7 +97,7 @@ impl<'e, W: World> AnyLearner<'e, W> {
 }
 
 impl<W: World> Learner<W::Percept> for AnyLearner<'_, W> {
-    fn value(&mut self, state: &FiniteState<W::Percept>) -> f64 {
+    fn value(&mut self, state: &MdpState<W::Percept>) -> f64 {
         let value = match self {
             Self::Flat(flat) => {
                 let values = flat.values(&state.percept);
@@ -112,7 +112,7 @@ impl<W: World> Learner<W::Percept> for AnyLearner<'_, W> {
         f64::from(value)
     }
 
-    fn greedy(&mut self, state: &FiniteState<W::Percept>) -> Option<usize> {
+    fn greedy(&mut self, state: &MdpState<W::Percept>) -> Option<usize> {
         match self {
             Self::Flat(flat) => {
                 let values = flat.values(&state.percept);

@@ -21,7 +21,7 @@ pub struct ValueGrid {
 /// The values of all states that a world can show, one grid for each of its variants;
 /// none where it does not consist of cells.
 pub fn value_grids<W: Scenic>(world: &W, learned: &Learned) -> Vec<ValueGrid> {
-    let (Some(finite), Some([columns, rows])) = (world.finite(), world.scenery().grid) else {
+    let (Some(finite), Some([columns, rows])) = (world.mdp(), world.scenery().grid) else {
         return Vec::new();
     };
     let none = Vec::new();

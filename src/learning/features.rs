@@ -159,11 +159,12 @@ mod tests {
     use super::*;
     use crate::scenario::Scenario;
     use crate::worlds::foraging::{ForagingWorld, INPUTS, RbfWidth};
-    use crate::worlds::{Axis, World, WorldModel};
+    use crate::worlds::{Axis, World, WorldSettings};
     use proptest::prelude::*;
 
     fn world(width: RbfWidth, proximity_centres: usize) -> ForagingWorld {
-        let WorldModel::Foraging(mut model) = Scenario::load("environment-1").unwrap().world else {
+        let WorldSettings::Foraging(mut model) = Scenario::load("environment-1").unwrap().world
+        else {
             unreachable!("it is a foraging scenario");
         };
         model.features.rbf_width = width;

@@ -12,7 +12,7 @@ use super::linear::value;
 use super::selection::Softmax;
 use crate::random::Stream;
 use crate::scenario::LearningSettings;
-use crate::worlds::finite::{FiniteModel, PolicyTable};
+use crate::worlds::mdp::{Mdp, PolicyTable};
 use crate::worlds::{MapId, World};
 
 /// What a flat learner learns.
@@ -42,7 +42,7 @@ pub struct Flat<'r, W: World> {
     world: &'r W,
     encoder: &'r Encoder,
     settings: &'r LearningSettings,
-    finite: &'r FiniteModel<W::Percept>,
+    finite: &'r Mdp<W::Percept>,
     map: MapId,
     lesson: FlatLesson,
     softmax: Softmax,
@@ -61,7 +61,7 @@ impl<'r, W: World> Flat<'r, W> {
         world: &'r W,
         encoder: &'r Encoder,
         settings: &'r LearningSettings,
-        finite: &'r FiniteModel<W::Percept>,
+        finite: &'r Mdp<W::Percept>,
         map: MapId,
         lesson: FlatLesson,
     ) -> Self {

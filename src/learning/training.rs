@@ -9,7 +9,7 @@ use super::selection::{Softmax, uniform};
 use super::skills::Skill;
 use crate::random::Stream;
 use crate::scenario::LearningSettings;
-use crate::worlds::{Exploration, TrainingModel};
+use crate::worlds::{Exploration, TrainingSettings};
 use crate::worlds::{SubtaskId, World};
 
 /// One primitive subtask in training, alone, by Thesis Eq. 3.6: the value of an action is
@@ -99,7 +99,7 @@ impl<'t, W: World> Trainee<'t, W> {
         self.skill
     }
 
-    fn episode(&mut self, mut state: W::State, training: &TrainingModel) {
+    fn episode(&mut self, mut state: W::State, training: &TrainingSettings) {
         let subtask = self.skill.subtask;
         let actions = self.world.catalogue().subtask(subtask).actions();
         for _ in 0..training.episode_steps.min(self.left) {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::files::{parse_json, read_text, stated_format};
 use crate::rules::Problem;
-use crate::worlds::WorldModel;
+use crate::worlds::WorldSettings;
 
 pub mod defaults;
 mod embedded;
@@ -47,7 +47,7 @@ pub struct Scenario {
     #[serde(default)]
     pub description: String,
     /// Where the agent acts.
-    pub world: WorldModel,
+    pub world: WorldSettings,
     /// How it learns.
     #[serde(default)]
     pub learning: LearningSettings,

@@ -115,6 +115,12 @@ impl SubtaskId {
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
+
+    /// The subtask's name in the given catalogue.
+    #[must_use]
+    pub fn name(self, catalogue: &Catalogue) -> &str {
+        &catalogue.subtask(self).name
+    }
 }
 
 /// A feature map of a catalogue: its index there.
@@ -165,7 +171,7 @@ pub enum FeatureKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeatureMap {
     /// What the map covers, for people.
-    pub name: &'static str,
+    pub name: String,
     /// The inputs, and what is made of them.
     pub kind: FeatureKind,
 }
@@ -227,9 +233,9 @@ pub enum Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subtask {
     /// Its name in hierarchies, such as `FindBattery`.
-    pub name: &'static str,
+    pub name: String,
     /// What it is for, in a few words.
-    pub purpose: &'static str,
+    pub purpose: String,
     /// State types in which it can be active (Thesis Tables 4.2 and 4.3).
     pub active: StateTypes,
     /// The features that its value functions are linear in.
@@ -289,7 +295,7 @@ impl Subtask {
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateTypeInfo {
     /// What is the case in such a state.
-    pub description: &'static str,
+    pub description: String,
 }
 
 /// All subtasks of a world.
@@ -337,7 +343,7 @@ impl Catalogue {
     pub fn letters(&self) -> Vec<char> {
         let mut letters: Vec<char> = Vec::new();
         for primitive in self.primitives() {
-            let name = self.subtask(primitive).name;
+            let name = &self.subtask(primitive).name;
             let capitals = name.chars().filter(char::is_ascii_uppercase);
             let others = name.chars().map(|c| c.to_ascii_uppercase());
             let free = capitals

@@ -9,8 +9,8 @@
 #[macro_use]
 mod settings;
 mod catalogue;
-pub mod finite;
 mod grid;
+pub mod mdp;
 pub mod scene;
 mod training;
 
@@ -19,9 +19,9 @@ pub use catalogue::{
     StateTypes, Subtask, SubtaskId,
 };
 pub use settings::{Settings, Visitor};
-pub use training::{Exploration, TrainingModel};
+pub use training::{Exploration, TrainingSettings};
 
-use self::finite::FiniteModel;
+use self::mdp::Mdp;
 use crate::random::Stream;
 use crate::rules::{Check, Problem};
 
@@ -33,13 +33,13 @@ pub mod taxi;
 
 worlds! {
     /// The cliff walk (Thesis 2.1.3, Figures 2.2 and 2.3).
-    Cliff: "cliff", cliff::CliffModel;
+    Cliff: "cliff", cliff::CliffSettings;
     /// The foraging task (Thesis 4.1 to 4.3): find a battery, capture it, bring it home.
-    Foraging: "foraging", foraging::ForagingModel;
+    Foraging: "foraging", foraging::ForagingSettings;
     /// Four rooms (Sutton, Precup and Singh 1999, *Between MDPs and semi-MDPs*, section 3).
-    FourRooms: "four_rooms", four_rooms::FourRoomsModel;
+    FourRooms: "four_rooms", four_rooms::FourRoomsSettings;
     /// The taxi problem (Dietterich 2000, section 3.1; Thesis 2.2.2, Figures 2.6 to 2.8).
-    Taxi: "taxi", taxi::TaxiModel;
+    Taxi: "taxi", taxi::TaxiSettings;
 }
 
 /// A typical input of a primitive subtask, for looking at what it has learned.
@@ -103,7 +103,7 @@ pub trait World: Send + Sync {
 
     /// How a primitive subtask is trained before evolution starts; `None` where it is
     /// not, and learns with each individual.
-    fn training(&self, primitive: SubtaskId) -> Option<&TrainingModel> {
+    fn training(&self, primitive: SubtaskId) -> Option<&TrainingSettings> {
         let _ = primitive;
         None
     }
@@ -128,12 +128,12 @@ pub trait World: Send + Sync {
     }
 
     /// A hierarchy that a person would make, as text.
-    fn hand_made(&self) -> Option<&'static str> {
+    fn hand_made(&self) -> Option<&str> {
         None
     }
 
     /// The whole world, exactly; `None` where it has too many states for that.
-    fn finite(&self) -> Option<FiniteModel<Self::Percept>> {
+    fn mdp(&self) -> Option<Mdp<Self::Percept>> {
         None
     }
 }

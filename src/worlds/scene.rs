@@ -13,7 +13,7 @@ pub struct Scenery {
     /// Extent along x and y from the origin.
     pub extent: [f64; 2],
     /// The unit of lengths: `mm`, `cells`.
-    pub unit: &'static str,
+    pub unit: String,
     /// Columns and rows, where the world consists of equal cells.
     pub grid: Option<[usize; 2]>,
     /// Walls from one end to the other.

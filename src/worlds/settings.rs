@@ -42,11 +42,11 @@ macro_rules! worlds {
         /// The world of a scenario: its name, which is that of its folder, and its settings.
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         #[serde(rename_all = "snake_case")]
-        pub enum WorldModel {
+        pub enum WorldSettings {
             $($(#[$doc])* $name(Box<$model>),)+
         }
 
-        impl WorldModel {
+        impl WorldSettings {
             /// The name of the world.
             #[must_use]
             pub fn name(&self) -> &'static str {

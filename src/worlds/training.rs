@@ -8,7 +8,7 @@ use crate::rules::Check;
 /// Training of one primitive subtask.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct TrainingModel {
+pub struct TrainingSettings {
     /// Time steps in all.
     pub steps: u32,
     /// Time steps after which an episode ends and the agent is put elsewhere.
@@ -19,7 +19,7 @@ pub struct TrainingModel {
     pub temperature_decrease: f64,
 }
 
-impl TrainingModel {
+impl TrainingSettings {
     /// Checks every rule.
     pub fn check(&self, check: &mut Check) {
         check.range("steps", self.steps, 0..=10_000_000);

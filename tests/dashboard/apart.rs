@@ -157,7 +157,7 @@ fn every_part_of_a_step_is_on_the_screen() {
     let text = screen.text();
     let catalogue = foraging().bench.catalogue();
     let tree = screen.0.app().desk().stage.tree().unwrap().clone();
-    let name = |node: usize| catalogue.subtask(tree.subtask(node)).name;
+    let name = |node: usize| tree.subtask(node).name(catalogue);
     for level in &trace.explanation.levels {
         assert!(text.contains(name(level.node)));
         for choice in &level.choices {

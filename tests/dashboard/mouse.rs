@@ -70,7 +70,7 @@ fn a_click_selects_a_subtask_of_the_inspector() {
         screen.press("i");
         let tree = screen.0.app().desk().stage.tree().unwrap().clone();
         let last = tree.subtask(tree.nodes().len() - 1);
-        let name = foraging().bench.catalogue().subtask(last).name;
+        let name = last.name(foraging().bench.catalogue());
         act(&mut screen, Gesture::Click, &format!("└─ {name}"));
         assert!(screen.text().contains("▸"), "{}", screen.text());
         assert_eq!(find(&screen.text(), "▸ ").y, find(&screen.text(), name).y);

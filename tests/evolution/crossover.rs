@@ -36,8 +36,8 @@ fn valid_pairs(a: &Nested, b: &Nested) -> Vec<[usize; 2]> {
 /// The learned values of an individual by subtask; composites occur once.
 pub fn values<'i>(
     individual: &'i Individual,
-    catalogue: &Catalogue,
-) -> BTreeMap<&'static str, &'i CompositeValues> {
+    catalogue: &'i Catalogue,
+) -> BTreeMap<&'i str, &'i CompositeValues> {
     let tree = individual.hierarchy.tree();
     let values = individual.hierarchy.values().iter().enumerate();
     values

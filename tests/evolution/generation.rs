@@ -8,7 +8,7 @@ use maxq_lab::hierarchy::{parse, structural_difference};
 use maxq_lab::learning::Gate;
 use maxq_lab::random::Stream;
 use maxq_lab::scenario::{Scenario, Selection};
-use maxq_lab::worlds::TrainingModel;
+use maxq_lab::worlds::TrainingSettings;
 use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld, INPUTS, Pose};
 use maxq_lab::worlds::{Catalogue, Probe, StateType, SubtaskId, World};
 
@@ -63,7 +63,7 @@ impl World for Logged {
     fn probes(&self, primitive: SubtaskId) -> Vec<Probe<[f32; INPUTS]>> {
         self.inner.probes(primitive)
     }
-    fn training(&self, primitive: SubtaskId) -> Option<&TrainingModel> {
+    fn training(&self, primitive: SubtaskId) -> Option<&TrainingSettings> {
         self.inner.training(primitive)
     }
     fn begin_training(&self, primitive: SubtaskId, rng: &mut Stream) -> Option<ForagingState> {

@@ -154,7 +154,7 @@ proptest! {
         let Some([child, _]) = crossover(&a, &b, [20, 21], &settings, catalogue, &mut draws) else {
             return Ok(());
         };
-        let crossed = values(&child, catalogue).into_iter().map(|(n, v)| (n, v.clone()));
+        let crossed = values(&child, catalogue).into_iter().map(|(n, v)| (n.to_owned(), v.clone()));
         let crossed: std::collections::BTreeMap<_, _> = crossed.collect();
         let mutant = mutated(child, &settings, catalogue, &mut draws);
         let Origin::Crossover { inherited, reset, mutations, .. } = &mutant.origin else {

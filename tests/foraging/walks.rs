@@ -181,7 +181,7 @@ fn rewards_are_those_of_equation_4_1() {
         let world = world(scenario);
         let (mut failures, mut reached) = (0, 0);
         walk(&world, 5, 30_000, |step| {
-            let name = world.catalogue().subtask(step.primitive).name;
+            let name = step.primitive.name(world.catalogue());
             let nearest = step
                 .after
                 .proximity_mm

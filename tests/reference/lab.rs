@@ -4,8 +4,8 @@ use maxq_lab::evolution::{Experiment, Workers};
 use maxq_lab::hierarchy::parse;
 use maxq_lab::learning::{Agent, Gate, Hierarchy, Skills};
 use maxq_lab::scenario::Scenario;
-use maxq_lab::worlds::WorldModel;
-use maxq_lab::worlds::foraging::ForagingModel;
+use maxq_lab::worlds::WorldSettings;
+use maxq_lab::worlds::foraging::ForagingSettings;
 use maxq_lab::worlds::foraging::ForagingWorld;
 
 use super::Recorder;
@@ -17,7 +17,7 @@ pub const STEP_LIMIT: u32 = 20_000;
 pub struct Lab {
     /// The scenario and its world.
     pub experiment: Experiment<ForagingWorld>,
-    model: ForagingModel,
+    model: ForagingSettings,
     /// The primitive subtasks.
     pub skills: Skills,
 }
@@ -39,7 +39,7 @@ impl Lab {
         let settings: Vec<_> = training.chain(settings).collect();
         let scenario = Scenario::load(scenario).unwrap();
         let scenario = scenario.with_settings(&settings).unwrap();
-        let WorldModel::Foraging(model) = scenario.world.clone() else {
+        let WorldSettings::Foraging(model) = scenario.world.clone() else {
             panic!("a foraging scenario")
         };
         let world = ForagingWorld::new(&model).unwrap();

@@ -19,7 +19,7 @@ use maxq_lab::scenario::{
     CompletionBootstrap, CoolOn, LearningSettings, PrimitiveLearning, PseudoReward,
 };
 use maxq_lab::worlds::Catalogue;
-use maxq_lab::worlds::foraging::FeatureModel;
+use maxq_lab::worlds::foraging::FeatureSettings;
 use subtasks::{Input, phi};
 
 /// Two children whose values differ by less than this can be swapped by the rounding
@@ -53,7 +53,7 @@ pub struct State {
 
 impl State {
     /// The state of this type in which the agent perceives `percept`.
-    pub fn new(state_type: usize, percept: &[f32], model: &FeatureModel) -> Self {
+    pub fn new(state_type: usize, percept: &[f32], model: &FeatureSettings) -> Self {
         Self {
             state_type,
             proximity: phi(Input::Proximity, percept, model),

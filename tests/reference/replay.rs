@@ -2,7 +2,7 @@
 
 use maxq_lab::learning::{Observer, Update};
 use maxq_lab::worlds::World;
-use maxq_lab::worlds::foraging::FeatureModel;
+use maxq_lab::worlds::foraging::FeatureSettings;
 use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld};
 
 use super::State;
@@ -47,7 +47,7 @@ pub struct Recorder<'w> {
     /// The world, which knows what the agent perceives.
     pub world: &'w ForagingWorld,
     /// The settings of the features.
-    pub features: FeatureModel,
+    pub features: FeatureSettings,
     /// What the agent did.
     pub events: Vec<Event>,
 }

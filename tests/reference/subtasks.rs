@@ -1,6 +1,6 @@
 //! Thesis Tables 4.1 to 4.3 and 4.6 and Eq. 2.22, written down once more.
 
-use maxq_lab::worlds::foraging::{FeatureModel, RbfWidth};
+use maxq_lab::worlds::foraging::{FeatureSettings, RbfWidth};
 
 /// The terminal state type, after the four of Table 4.1 numbered from 1.
 pub const DELIVERED: usize = 5;
@@ -67,7 +67,7 @@ pub fn row(name: &str) -> Row {
 
 /// Eq. 2.22 on the full grid: one exponential a centre, divided by their sum. The
 /// grid's last input varies fastest.
-pub fn phi(input: Input, percept: &[f32], model: &FeatureModel) -> Vec<f64> {
+pub fn phi(input: Input, percept: &[f32], model: &FeatureSettings) -> Vec<f64> {
     let proximity = PROXIMITY.map(|sensor| (sensor, model.proximity_centres));
     let axes: Vec<(usize, usize)> = match input {
         Input::Proximity => proximity.to_vec(),

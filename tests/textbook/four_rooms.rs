@@ -15,7 +15,7 @@ fn cell([column, row]: [usize; 2]) -> usize {
 #[test]
 fn exact_values_are_minus_the_lengths_of_the_shortest_ways() {
     let experiment = four_rooms(&["world.four_rooms.slip=0"]);
-    let values = experiment.world.finite().unwrap().optimal_values(1.0).0;
+    let values = experiment.world.mdp().unwrap().optimal_values(1.0).0;
     for (from, steps) in [
         ([8, 8], 0.0),
         // Straight to the goal; through the hallways in the east, the south, the north.

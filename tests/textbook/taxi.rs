@@ -98,7 +98,7 @@ fn the_greedy_policy_is_optimal_from_every_start() {
         let setting = format!("world.taxi.state_abstraction={abstraction}");
         let experiment = taxi("taxi", &[&setting]);
         let (hierarchy, skills) = taught(&experiment);
-        let finite = experiment.world.finite().unwrap();
+        let finite = experiment.world.mdp().unwrap();
         let exact = finite.optimal_values(1.0).0;
         // Neither explores nor learns.
         let mut still = experiment.scenario.learning.clone();
@@ -135,7 +135,7 @@ fn learned_values_are_exact_in_every_start_state() {
     let experiment = taxi("taxi", &[]);
     let algorithm = Algorithm::MaxqQ(hand_made(&experiment));
     let learned = learned(&experiment, &algorithm, 300_000, 1);
-    let finite = experiment.world.finite().unwrap();
+    let finite = experiment.world.mdp().unwrap();
     let course = &learned.repeats[0];
     for (number, state) in finite.existing() {
         if state.start > 0.0 {

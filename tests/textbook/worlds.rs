@@ -13,12 +13,12 @@ const SAMPLES: usize = 400;
 /// In every state that the world can show: the rewards and next states of many steps come
 /// as often as the model says.
 fn check<W: Scenic>(world: &W) -> usize {
-    let finite = world.finite().unwrap();
+    let finite = world.mdp().unwrap();
     let mut rng = stream(3, 0, 0, Purpose::Life);
     let [columns, rows] = world.scenery().grid.unwrap();
     let number = |state: &W::State| {
         let (state_type, percept) = (world.state_type(state), world.percept(state));
-        let same = |(_, known): &(usize, &maxq_lab::worlds::finite::FiniteState<W::Percept>)| {
+        let same = |(_, known): &(usize, &maxq_lab::worlds::mdp::MdpState<W::Percept>)| {
             // The end has one number, whatever is perceived there.
             known.state_type == state_type
                 && (known.outcomes.is_empty() || known.percept.as_ref() == percept.as_ref())

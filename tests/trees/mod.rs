@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use maxq_lab::hierarchy::Tree;
 use maxq_lab::scenario::Scenario;
-use maxq_lab::worlds::WorldModel;
+use maxq_lab::worlds::WorldSettings;
 use maxq_lab::worlds::foraging::ForagingWorld;
 use maxq_lab::worlds::{Catalogue, SubtaskId};
 use rand::rngs::SmallRng;
@@ -32,7 +32,7 @@ pub const MAXIMUM_DEPTH: usize = 4;
 
 /// The world of environment 1.
 pub fn world() -> ForagingWorld {
-    let WorldModel::Foraging(model) = Scenario::load("environment-1").unwrap().world else {
+    let WorldSettings::Foraging(model) = Scenario::load("environment-1").unwrap().world else {
         panic!("a foraging scenario")
     };
     ForagingWorld::new(&model).unwrap()
@@ -67,7 +67,7 @@ impl Nested {
 
     fn below(tree: &Tree, node: usize, catalogue: &Catalogue) -> Self {
         Self {
-            name: tree.subtask(node).name(catalogue),
+            name: known(tree.subtask(node).name(catalogue)).0,
             children: tree
                 .children(node)
                 .map(|child| Self::below(tree, child, catalogue))
@@ -154,9 +154,12 @@ impl Nested {
     }
 }
 
+fn known(name: &str) -> &'static (&'static str, &'static [u8]) {
+    ACTIVE.iter().find(|(known, _)| *known == name).unwrap()
+}
+
 pub fn active(name: &str) -> &'static [u8] {
-    let (_, active) = ACTIVE.iter().find(|(known, _)| *known == name).unwrap();
-    active
+    known(name).1
 }
 
 pub fn is_composite(name: &str) -> bool {

@@ -190,7 +190,7 @@ fn state(desk: &Desk, state_type: StateType, case: Option<&str>) -> String {
     let Some(info) = types.get(number - 1) else {
         return String::from("done");
     };
-    let description = info.description;
+    let description = &info.description;
     match case {
         Some(case) => format!("{case}: {number} {description}"),
         None => format!("{number} {description}"),

@@ -202,7 +202,7 @@ impl Side<'_> {
                     true => ("+", Paint::Notice),
                     false => (" ", Paint::Text),
                 };
-                let name = desk.catalogue().subtask(primitive).name;
+                let name = primitive.name(desk.catalogue());
                 let text = format!("{sign}{name} {}", percent(share));
                 if pen.column() + width(&text) > columns {
                     lines.push(pen.line());

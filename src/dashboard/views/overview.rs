@@ -80,7 +80,7 @@ pub(in crate::dashboard) fn panels(area: Rect, desk: &Desk) -> Vec<(ViewId, Rect
 /// Columns of the policy panel: a share of all, and those of the longest name of a state type.
 fn policy_columns(desk: &Desk, all: u16) -> u16 {
     let types = desk.catalogue().state_types.iter().enumerate();
-    let longest = types.map(|(index, info)| width(&policy::title(index, info.description)));
+    let longest = types.map(|(index, info)| width(&policy::title(index, &info.description)));
     let wanted = longest.max().unwrap_or(0) + 4;
     let wanted = u16::try_from(wanted).unwrap_or(u16::MAX);
     wanted.min(all * 3 / 8).max(all * 4 / 13)

@@ -117,7 +117,7 @@ fn draw_type(
         ..area
     };
     let info = desk.catalogue().state_types.get(index);
-    let title = title(index, info.map_or("", |info| info.description));
+    let title = title(index, info.map_or("", |info| &info.description));
     let room = usize::from(area.width.saturating_sub(1));
     let title = fitted(&title, room, look.signs);
     let bar_row = u16::from(area.height > 1);

@@ -178,7 +178,7 @@ fn policy_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
             };
             Pen::new(&desk.look)
                 .text(format!("{letter} "), paint)
-                .cell(catalogue.subtask(primitive).name, 17, paint)
+                .cell(primitive.name(catalogue), 17, paint)
                 .right(&percent(share), 6, Paint::Text)
                 .line()
         })

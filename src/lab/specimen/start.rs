@@ -25,7 +25,7 @@ pub struct StartError {
     /// The text.
     pub found: String,
     /// The unit of lengths.
-    pub unit: &'static str,
+    pub unit: String,
     /// The largest X and Y.
     pub extent: String,
     /// What can be the case.
@@ -44,7 +44,7 @@ impl Start {
         let [width, height] = scenery.extent;
         start.ok_or_else(|| StartError {
             found: text.to_owned(),
-            unit: scenery.unit,
+            unit: scenery.unit.clone(),
             extent: format!("{width},{height}"),
             cases: bench.variants().join(", "),
         })

@@ -24,7 +24,7 @@ pub struct Sketch {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SketchNode {
     /// The subtask.
-    pub name: &'static str,
+    pub name: String,
     /// Whether it is composite.
     pub composite: bool,
     /// Its place from left to right, in leaves.
@@ -44,7 +44,7 @@ impl Sketch {
             .nodes()
             .iter()
             .map(|node| SketchNode {
-                name: node.subtask.name(catalogue),
+                name: node.subtask.name(catalogue).to_owned(),
                 composite: catalogue.subtask(node.subtask).is_composite(),
                 column: 0.0,
                 row: node.depth - 1,

@@ -1,6 +1,6 @@
 //! The subtasks of the cliff walk.
 
-use super::CliffModel;
+use super::CliffSettings;
 use crate::worlds::grid::Cells;
 use crate::worlds::{
     Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,
@@ -33,20 +33,22 @@ pub(super) const CELL: MapId = MapId(0);
 /// Gaussians over the place.
 pub(super) const PLACE: MapId = MapId(1);
 
-pub(super) fn catalogue(cells: Cells, model: &CliffModel) -> Catalogue {
+pub(super) fn catalogue(cells: Cells, settings: &CliffSettings) -> Catalogue {
     Catalogue {
         state_types: ["at the start", "above the cliff", "above the goal"]
-            .map(|description| StateTypeInfo { description })
+            .map(|description| StateTypeInfo {
+                description: String::from(description),
+            })
             .into(),
         subtasks: subtasks(),
-        maps: maps(cells, model),
+        maps: maps(cells, settings),
     }
 }
 
 fn subtasks() -> Vec<Subtask> {
     let composite = |name, purpose, active: &[StateType], goal, weight| Subtask {
-        name,
-        purpose,
+        name: String::from(name),
+        purpose: String::from(purpose),
         active: StateTypes::of(active),
         map: CELL,
         kind: Kind::Composite {
@@ -56,9 +58,9 @@ fn subtasks() -> Vec<Subtask> {
             abstractions: Vec::new(),
         },
     };
-    let primitive = |name: &'static str, purpose| Subtask {
-        name,
-        purpose,
+    let primitive = |name: &str, purpose| Subtask {
+        name: String::from(name),
+        purpose: String::from(purpose),
         active: StateTypes::of(&[AT_START, ABOVE, LAST]),
         map: CELL,
         kind: Kind::Primitive {
@@ -78,22 +80,22 @@ fn subtasks() -> Vec<Subtask> {
     ]
 }
 
-fn maps(cells: Cells, model: &CliffModel) -> Vec<FeatureMap> {
+fn maps(cells: Cells, settings: &CliffSettings) -> Vec<FeatureMap> {
     let axis = |input, centres: usize| Axis {
         input,
         centres,
-        sigma: model.rbf_width_cells / (centres - 1) as f64,
+        sigma: settings.rbf_width_cells / (centres - 1) as f64,
     };
     vec![
         FeatureMap {
-            name: "cell",
+            name: String::from("cell"),
             kind: FeatureKind::Table(vec![Index {
                 input: 0,
                 values: cells.columns * cells.rows,
             }]),
         },
         FeatureMap {
-            name: "x, y",
+            name: String::from("x, y"),
             kind: FeatureKind::Gaussian(vec![axis(1, cells.columns), axis(2, cells.rows)]),
         },
     ]

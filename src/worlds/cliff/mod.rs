@@ -18,16 +18,16 @@
 //! failing dear.
 
 mod catalogue;
-mod exact;
-mod model;
+mod mdp;
 mod scene;
+mod settings;
 
 use rand::RngExt;
 
 use self::catalogue::{ABOVE, AT_GOAL, AT_START, DOWN, INPUTS, LAST, LEFT, RIGHT};
-pub use self::model::{CliffBegin, CliffModel};
-use super::finite::FiniteModel;
+pub use self::settings::{CliffBegin, CliffSettings};
 use super::grid::{Cells, Direction, any_of};
+use super::mdp::Mdp;
 use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::{Check, Problem};
@@ -41,7 +41,7 @@ pub type Percept = [f32; INPUTS];
 pub struct CliffWorld {
     catalogue: Catalogue,
     cells: Cells,
-    model: CliffModel,
+    settings: CliffSettings,
 }
 
 impl CliffWorld {
@@ -49,19 +49,19 @@ impl CliffWorld {
     ///
     /// # Errors
     /// When the grid is too small to have a cliff.
-    pub fn new(model: &CliffModel) -> Result<Self, Problem> {
+    pub fn new(settings: &CliffSettings) -> Result<Self, Problem> {
         let cells = Cells {
-            columns: model.width,
-            rows: model.height,
+            columns: settings.width,
+            rows: settings.height,
         };
         if cells.columns < 3 || cells.rows < 2 {
             let found = format!("{} by {} cells", cells.columns, cells.rows);
             return Err(Problem::new("", found, "at least 3 by 2"));
         }
         Ok(Self {
-            catalogue: catalogue::catalogue(cells, model),
+            catalogue: catalogue::catalogue(cells, settings),
             cells,
-            model: model.clone(),
+            settings: settings.clone(),
         })
     }
 
@@ -83,7 +83,7 @@ impl CliffWorld {
 
     /// The cells in which trials begin.
     fn beginnings(&self) -> std::ops::RangeInclusive<usize> {
-        match self.model.begin {
+        match self.settings.begin {
             CliffBegin::Start => self.start()..=self.start(),
             CliffBegin::Anywhere => 0..=self.start(),
         }
@@ -98,13 +98,13 @@ impl CliffWorld {
         };
         let to = self.cells.neighbour(cell, direction).unwrap_or(cell);
         match self.is_cliff(to) {
-            true => (self.start(), self.model.fall_reward),
-            false => (to, self.model.step_reward),
+            true => (self.start(), self.settings.fall_reward),
+            false => (to, self.settings.step_reward),
         }
     }
 }
 
-impl Settings for CliffModel {
+impl Settings for CliffSettings {
     type World = CliffWorld;
 
     fn check(&self, check: &mut Check) {
@@ -165,14 +165,14 @@ impl World for CliffWorld {
         any_of(cells, rng).map(|cell| self.percept(&cell))
     }
 
-    fn hand_made(&self) -> Option<&'static str> {
+    fn hand_made(&self) -> Option<&str> {
         Some(
             "(Root (Leave Up Down Right Left) (Cross Up Down Right Left) \
              (Descend Up Down Right Left))",
         )
     }
 
-    fn finite(&self) -> Option<FiniteModel<Percept>> {
-        Some(self.exact())
+    fn mdp(&self) -> Option<Mdp<Percept>> {
+        Some(self.as_mdp())
     }
 }

@@ -22,7 +22,7 @@ impl Scenic for CliffWorld {
         places.extend(cliff.map(|cell| mark(Role::Hazard, "cliff", cell)));
         Scenery {
             extent: self.cells.extent(),
-            unit: "cells",
+            unit: String::from("cells"),
             grid: Some([self.cells.columns, self.cells.rows]),
             walls: outer_walls(self.cells).into(),
             places,

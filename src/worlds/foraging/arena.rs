@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use nalgebra::{Point2, Vector2};
 
-use super::ArenaModel;
+use super::ArenaSettings;
 
 /// Cells along the longer side. More cells give shorter lists and a longer start. Another
 /// number gives other bits.
@@ -118,18 +118,18 @@ pub struct Arena {
 }
 
 impl Arena {
-    pub(super) fn new(model: &ArenaModel, reach: Reach) -> Self {
-        let [width, height] = model.size_mm;
+    pub(super) fn new(settings: &ArenaSettings, reach: Reach) -> Self {
+        let [width, height] = settings.size_mm;
         let outer = [
             [0.0, 0.0, width, 0.0],
             [width, 0.0, width, height],
             [width, height, 0.0, height],
             [0.0, height, 0.0, 0.0],
         ];
-        let fences = model.fences.iter().flat_map(|fence| fence.pieces());
+        let fences = settings.fences.iter().flat_map(|fence| fence.pieces());
         let walls = outer
             .into_iter()
-            .chain(model.walls_mm.iter().copied())
+            .chain(settings.walls_mm.iter().copied())
             .chain(fences)
             .map(Wall::new)
             .collect();
@@ -137,13 +137,13 @@ impl Arena {
         let mut arena = Self {
             size: Vector2::new(width, height),
             walls,
-            batteries: model
+            batteries: settings
                 .batteries_mm
                 .iter()
                 .copied()
                 .map(Point2::from)
                 .collect(),
-            nest: Point2::from(model.nest_mm),
+            nest: Point2::from(settings.nest_mm),
             columns: (width / cell_side).ceil() as usize,
             rows: (height / cell_side).ceil() as usize,
             cell_side,
@@ -241,7 +241,7 @@ impl Arena {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worlds::foraging::model::tests::environment;
+    use crate::worlds::foraging::settings::tests::environment;
     use proptest::prelude::*;
 
     fn arena() -> Arena {

@@ -1,6 +1,6 @@
 //! The subtasks of the foraging task (Thesis Tables 4.1 to 4.3 and 4.6).
 
-use super::{FeatureModel, ForagingModel, RbfWidth};
+use super::{FeatureSettings, ForagingSettings, RbfWidth};
 use crate::worlds::{
     Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Kind, MapId, StateType, StateTypeInfo,
     StateTypes, Subtask, SubtaskId,
@@ -43,11 +43,11 @@ const APPROACH_MAP: MapId = MapId(2);
 const TURN_MAP: MapId = MapId(3);
 
 /// The catalogue of the foraging task with the scenario's actions and features.
-pub(super) fn catalogue(model: &ForagingModel) -> Catalogue {
+pub(super) fn catalogue(settings: &ForagingSettings) -> Catalogue {
     Catalogue {
         state_types: state_types(),
-        subtasks: subtasks(model),
-        maps: maps(&model.features),
+        subtasks: subtasks(settings),
+        maps: maps(&settings.features),
     }
 }
 
@@ -58,16 +58,18 @@ fn state_types() -> Vec<StateTypeInfo> {
         "carrying, nest not visible",
         "carrying, nest visible",
     ]
-    .map(|description| StateTypeInfo { description })
+    .map(|description| StateTypeInfo {
+        description: String::from(description),
+    })
     .into()
 }
 
-fn subtasks(model: &ForagingModel) -> Vec<Subtask> {
+fn subtasks(settings: &ForagingSettings) -> Vec<Subtask> {
     use {BATTERY_VISIBLE as B, CARRYING as C, DELIVERED as D, NEST_VISIBLE as N, SEARCHING as S};
     let composite =
         |name, purpose, active: &[StateType], map, goal: &[StateType], weight| Subtask {
-            name,
-            purpose,
+            name: String::from(name),
+            purpose: String::from(purpose),
             active: StateTypes::of(active),
             map,
             kind: Kind::Composite {
@@ -78,8 +80,8 @@ fn subtasks(model: &ForagingModel) -> Vec<Subtask> {
             },
         };
     let primitive = |name, purpose, active: &[StateType], map, actions: &[[f64; 2]]| Subtask {
-        name,
-        purpose,
+        name: String::from(name),
+        purpose: String::from(purpose),
         active: StateTypes::of(active),
         map,
         kind: Kind::Primitive {
@@ -89,7 +91,7 @@ fn subtasks(model: &ForagingModel) -> Vec<Subtask> {
                 .collect(),
         },
     };
-    let p = &model.primitives;
+    let p = &settings.primitives;
     vec![
         composite(
             "Root",
@@ -178,7 +180,7 @@ fn subtasks(model: &ForagingModel) -> Vec<Subtask> {
     ]
 }
 
-fn maps(features: &FeatureModel) -> Vec<FeatureMap> {
+fn maps(features: &FeatureSettings) -> Vec<FeatureMap> {
     let axis = |input, centres| Axis {
         input,
         centres,
@@ -189,19 +191,19 @@ fn maps(features: &FeatureModel) -> Vec<FeatureMap> {
     let distance = axis(DISTANCE, features.distance_centres);
     vec![
         FeatureMap {
-            name: "proximity",
+            name: String::from("proximity"),
             kind: FeatureKind::Gaussian(proximity.clone().collect()),
         },
         FeatureMap {
-            name: "angle x distance x proximity",
+            name: String::from("angle x distance x proximity"),
             kind: FeatureKind::Gaussian([angle, distance].into_iter().chain(proximity).collect()),
         },
         FeatureMap {
-            name: "angle",
+            name: String::from("angle"),
             kind: FeatureKind::Gaussian(vec![axis(ANGLE, features.approach_centres)]),
         },
         FeatureMap {
-            name: "angle",
+            name: String::from("angle"),
             kind: FeatureKind::Gaussian(vec![axis(ANGLE, features.turn_centres)]),
         },
     ]
@@ -219,7 +221,7 @@ fn sigma(width: RbfWidth, centres: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worlds::foraging::model::tests::environment;
+    use crate::worlds::foraging::settings::tests::environment;
 
     #[test]
     fn numbers_of_features_are_those_of_table_4_6() {

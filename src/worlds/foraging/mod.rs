@@ -36,30 +36,30 @@ use rand::RngExt;
 mod arena;
 mod catalogue;
 pub mod defaults;
-mod model;
 mod motion;
 mod probes;
 mod rays;
 mod rules;
 mod scene;
 mod sensors;
+mod settings;
 
 pub use arena::{Arena, Wall};
 pub use catalogue::{
     ANGLE, APPROACH_BATTERY, APPROACH_NEST, AVOID, BATTERY_VISIBLE, CARRYING, DELIVERED, DISTANCE,
     INPUTS, NEST_VISIBLE, PROXIMITY_SENSORS, SEARCHING, TURN, WANDER,
 };
-pub use model::{
-    ArenaModel, FeatureModel, FenceModel, ForagingModel, MovementModel, PrimitiveModels, RbfWidth,
-    RobotModel, SensorModel, TargetModel, TrainingModels,
-};
 pub use sensors::TargetReading;
+pub use settings::{
+    ArenaSettings, FeatureSettings, FenceSettings, ForagingSettings, MovementSettings,
+    PrimitiveSettings, PrimitiveTraining, RbfWidth, RobotSettings, SensorSettings, TargetSettings,
+};
 
 use arena::Reach;
 use motion::{Arc, slide};
 use sensors::{Sensors, Sighting};
 
-use super::{Catalogue, Probe, Settings, StateType, SubtaskId, TrainingModel, World};
+use super::{Catalogue, Probe, Settings, StateType, SubtaskId, TrainingSettings, World};
 use crate::random::{Purpose, Stream, stream};
 use crate::rules::{Check, Problem};
 
@@ -118,7 +118,7 @@ enum Reward {
 struct Primitive {
     arcs: Vec<Arc>,
     reward: Reward,
-    training: TrainingModel,
+    training: TrainingSettings,
 }
 
 /// The foraging world of a scenario.
@@ -142,25 +142,25 @@ impl ForagingWorld {
     ///
     /// # Errors
     /// When the arena has no room for the robot.
-    pub fn new(model: &ForagingModel) -> Result<Self, Problem> {
-        let primitives = primitives(model);
+    pub fn new(settings: &ForagingSettings) -> Result<Self, Problem> {
+        let primitives = primitives(settings);
         let longest = primitives
             .iter()
             .flat_map(|primitive| primitive.arcs.iter().map(Arc::length))
             .fold(0.0, f64::max);
-        let radius = model.robot.radius_mm;
+        let radius = settings.robot.radius_mm;
         let reach = Reach {
             touch: radius + longest,
-            proximity: Sensors::proximity_reach(&model.sensors, radius),
+            proximity: Sensors::proximity_reach(&settings.sensors, radius),
         };
         let mut world = Self {
-            catalogue: catalogue::catalogue(model),
-            arena: Arena::new(&model.arena, reach),
-            sensors: Sensors::new(&model.sensors, radius),
+            catalogue: catalogue::catalogue(settings),
+            arena: Arena::new(&settings.arena, reach),
+            sensors: Sensors::new(&settings.sensors, radius),
             radius,
-            capture_distance: model.robot.capture_distance_mm,
-            delivery_distance: model.robot.delivery_distance_mm,
-            time_step_s: model.time_step_s,
+            capture_distance: settings.robot.capture_distance_mm,
+            delivery_distance: settings.robot.delivery_distance_mm,
+            time_step_s: settings.time_step_s,
             primitives,
             some_pose: Pose {
                 position: Point2::origin(),
@@ -300,12 +300,12 @@ impl ForagingWorld {
     }
 }
 
-fn primitives(model: &ForagingModel) -> [Primitive; 5] {
+fn primitives(settings: &ForagingSettings) -> [Primitive; 5] {
     let arcs = |actions: &[[f64; 2]]| {
-        let arc = |&speeds| Arc::new(speeds, model.robot.wheel_base_mm, model.time_step_s);
+        let arc = |&speeds| Arc::new(speeds, settings.robot.wheel_base_mm, settings.time_step_s);
         actions.iter().map(arc).collect()
     };
-    let movement = |subtask: &MovementModel, training: &TrainingModel| Primitive {
+    let movement = |subtask: &MovementSettings, training: &TrainingSettings| Primitive {
         arcs: arcs(&subtask.actions_mm_per_s),
         reward: Reward::Movement {
             actions: subtask
@@ -317,7 +317,7 @@ fn primitives(model: &ForagingModel) -> [Primitive; 5] {
         },
         training: training.clone(),
     };
-    let target = |subtask: &TargetModel, training: &TrainingModel| Primitive {
+    let target = |subtask: &TargetSettings, training: &TrainingSettings| Primitive {
         arcs: arcs(&subtask.actions_mm_per_s),
         reward: Reward::Target {
             offset: subtask.reward_offset as f32,
@@ -326,7 +326,7 @@ fn primitives(model: &ForagingModel) -> [Primitive; 5] {
         },
         training: training.clone(),
     };
-    let (p, t) = (&model.primitives, &model.primitive_training);
+    let (p, t) = (&settings.primitives, &settings.primitive_training);
     [
         movement(&p.avoid, &t.avoid),
         movement(&p.wander, &t.wander),
@@ -336,7 +336,7 @@ fn primitives(model: &ForagingModel) -> [Primitive; 5] {
     ]
 }
 
-impl Settings for ForagingModel {
+impl Settings for ForagingSettings {
     type World = ForagingWorld;
 
     fn check(&self, check: &mut Check) {
@@ -438,7 +438,7 @@ impl World for ForagingWorld {
         }
     }
 
-    fn training(&self, primitive: SubtaskId) -> Option<&TrainingModel> {
+    fn training(&self, primitive: SubtaskId) -> Option<&TrainingSettings> {
         Some(&self.primitive(primitive).training)
     }
 

@@ -1,9 +1,9 @@
 //! The rules that the settings of the foraging task obey, one small function for each
 //! part of them.
 
-use super::model::{
-    ArenaModel, FeatureModel, FenceModel, ForagingModel, MovementModel, RobotModel, SensorModel,
-    TargetModel,
+use super::settings::{
+    ArenaSettings, FeatureSettings, FenceSettings, ForagingSettings, MovementSettings,
+    RobotSettings, SensorSettings, TargetSettings,
 };
 use crate::rules::Check;
 
@@ -16,14 +16,16 @@ const MAX_SLITS: usize = 200;
 const MAX_FEATURES: usize = 1 << 14;
 
 /// Checks every rule.
-pub(super) fn rules(check: &mut Check, model: &ForagingModel) {
-    check.within("arena", |c| arena(c, &model.arena, model.robot.radius_mm));
-    check.within("robot", |c| robot(c, &model.robot));
-    check.within("sensors", |c| sensors(c, &model.sensors));
-    check.within("features", |c| features(c, &model.features));
-    check.range("time_step_s", model.time_step_s, 0.001..=1.0);
-    let p = &model.primitives;
-    let t = &model.primitive_training;
+pub(super) fn rules(check: &mut Check, settings: &ForagingSettings) {
+    check.within("arena", |c| {
+        arena(c, &settings.arena, settings.robot.radius_mm)
+    });
+    check.within("robot", |c| robot(c, &settings.robot));
+    check.within("sensors", |c| sensors(c, &settings.sensors));
+    check.within("features", |c| features(c, &settings.features));
+    check.range("time_step_s", settings.time_step_s, 0.001..=1.0);
+    let p = &settings.primitives;
+    let t = &settings.primitive_training;
     check.within("primitives", |c| {
         c.within("avoid", |c| movement(c, &p.avoid));
         c.within("wander", |c| movement(c, &p.wander));
@@ -40,7 +42,7 @@ pub(super) fn rules(check: &mut Check, model: &ForagingModel) {
     });
 }
 
-fn arena(check: &mut Check, arena: &ArenaModel, radius: f64) {
+fn arena(check: &mut Check, arena: &ArenaSettings, radius: f64) {
     let smallest = 4.0 * radius.clamp(0.0, 1000.0);
     check.range("size_mm[0]", arena.size_mm[0], smallest..=20_000.0);
     check.range("size_mm[1]", arena.size_mm[1], smallest..=20_000.0);
@@ -52,8 +54,10 @@ fn arena(check: &mut Check, arena: &ArenaModel, radius: f64) {
             segment(c, ["", ""], [x1, y1], [x2, y2], arena.size_mm);
         });
     }
-    for (i, model) in arena.fences.iter().enumerate() {
-        check.within(&format!("fences[{i}]"), |c| fence(c, model, arena.size_mm));
+    for (i, settings) in arena.fences.iter().enumerate() {
+        check.within(&format!("fences[{i}]"), |c| {
+            fence(c, settings, arena.size_mm)
+        });
     }
     let batteries = arena.batteries_mm.len();
     check.range("batteries_mm (number)", batteries, 1..=MAX_BATTERIES);
@@ -75,7 +79,7 @@ fn segment(check: &mut Check, parts: [&str; 2], from: [f64; 2], to: [f64; 2], si
     );
 }
 
-fn fence(check: &mut Check, fence: &FenceModel, size: [f64; 2]) {
+fn fence(check: &mut Check, fence: &FenceSettings, size: [f64; 2]) {
     segment(
         check,
         ["from_mm", "to_mm"],
@@ -106,7 +110,7 @@ fn fence(check: &mut Check, fence: &FenceModel, size: [f64; 2]) {
     }
 }
 
-fn robot(check: &mut Check, robot: &RobotModel) {
+fn robot(check: &mut Check, robot: &RobotSettings) {
     check.range("radius_mm", robot.radius_mm, 1.0..=1000.0);
     check.range("wheel_base_mm", robot.wheel_base_mm, 1.0..=2000.0);
     check.range(
@@ -121,7 +125,7 @@ fn robot(check: &mut Check, robot: &RobotModel) {
     );
 }
 
-fn sensors(check: &mut Check, sensors: &SensorModel) {
+fn sensors(check: &mut Check, sensors: &SensorSettings) {
     for (i, &angle) in sensors.proximity_angles_deg.iter().enumerate() {
         check.range(&format!("proximity_angles_deg[{i}]"), angle, -180.0..=180.0);
     }
@@ -143,7 +147,7 @@ fn sensors(check: &mut Check, sensors: &SensorModel) {
     check.range("noise", sensors.noise, 0.0..=0.9);
 }
 
-fn features(check: &mut Check, features: &FeatureModel) {
+fn features(check: &mut Check, features: &FeatureSettings) {
     check.range("proximity_centres", features.proximity_centres, 2..=4);
     check.range("angle_centres", features.angle_centres, 2..=32);
     check.range("distance_centres", features.distance_centres, 2..=32);
@@ -168,30 +172,30 @@ fn actions(check: &mut Check, actions: &[[f64; 2]]) {
     }
 }
 
-fn movement(check: &mut Check, model: &MovementModel) {
-    actions(check, &model.actions_mm_per_s);
-    let (rewards, expected) = (model.rewards.len(), model.actions_mm_per_s.len());
+fn movement(check: &mut Check, settings: &MovementSettings) {
+    actions(check, &settings.actions_mm_per_s);
+    let (rewards, expected) = (settings.rewards.len(), settings.actions_mm_per_s.len());
     check.rule(
         rewards == expected,
         "rewards (number)",
         rewards,
         format!("{expected}, one for each action"),
     );
-    for (i, &value) in model.rewards.iter().enumerate() {
+    for (i, &value) in settings.rewards.iter().enumerate() {
         check.reward(&format!("rewards[{i}]"), value);
     }
-    check.reward("failure_reward", model.failure_reward);
+    check.reward("failure_reward", settings.failure_reward);
 }
 
-fn target(check: &mut Check, model: &TargetModel) {
-    actions(check, &model.actions_mm_per_s);
-    check.reward("reward_offset", model.reward_offset);
+fn target(check: &mut Check, settings: &TargetSettings) {
+    actions(check, &settings.actions_mm_per_s);
+    check.reward("reward_offset", settings.reward_offset);
     check.range(
         "reward_divisor_deg",
-        model.reward_divisor_deg,
+        settings.reward_divisor_deg,
         0.1..=100_000.0,
     );
-    check.reward("failure_reward", model.failure_reward);
+    check.reward("failure_reward", settings.failure_reward);
 }
 
 fn point(check: &mut Check, part: &str, [x, y]: [f64; 2], [width, height]: [f64; 2]) {

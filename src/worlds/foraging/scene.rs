@@ -27,7 +27,7 @@ impl Scenic for ForagingWorld {
         let ends = |wall: &super::Wall| [wall.start, wall.end()].map(|end| [end.x, end.y]);
         Scenery {
             extent: arena.size.into(),
-            unit: "mm",
+            unit: String::from("mm"),
             grid: None,
             walls: arena.walls.iter().map(ends).collect(),
             places: vec![Mark {
@@ -257,7 +257,7 @@ fn scale(name: &str, values: &[f32]) -> Scale {
 mod tests {
     use super::*;
     use crate::random::{Purpose, stream};
-    use crate::worlds::foraging::model::tests::environment;
+    use crate::worlds::foraging::settings::tests::environment;
     use crate::worlds::foraging::{AVOID, CARRYING, SEARCHING};
 
     fn world() -> ForagingWorld {

@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 
-use super::SensorModel;
+use super::SensorSettings;
 use super::arena::Arena;
 use super::catalogue::PROXIMITY_SENSORS;
 use super::motion::rotate;
@@ -41,25 +41,25 @@ pub(super) struct Sensors {
 }
 
 impl Sensors {
-    pub(super) fn new(model: &SensorModel, body_radius: f64) -> Self {
+    pub(super) fn new(settings: &SensorSettings, body_radius: f64) -> Self {
         Self {
-            rays: model.proximity_angles_deg.map(|angle| {
+            rays: settings.proximity_angles_deg.map(|angle| {
                 let (sin, cos) = libm::sincos(angle.to_radians());
                 Vector2::new(cos, sin)
             }),
             body_radius,
-            proximity_range: model.proximity_range_mm.map(|range| range as f32),
-            vision_half_angle_deg: model.vision_half_angle_deg as f32,
-            vision_half_angle_cos: libm::cos(model.vision_half_angle_deg.to_radians()),
-            vision_range: model.vision_range_mm,
-            noise: model.noise as f32,
+            proximity_range: settings.proximity_range_mm.map(|range| range as f32),
+            vision_half_angle_deg: settings.vision_half_angle_deg as f32,
+            vision_half_angle_cos: libm::cos(settings.vision_half_angle_deg.to_radians()),
+            vision_range: settings.vision_range_mm,
+            noise: settings.noise as f32,
         }
     }
 
     /// The largest distance from the robot's centre at which a wall can change a
     /// proximity reading: noise comes before clipping.
-    pub(super) fn proximity_reach(model: &SensorModel, body_radius: f64) -> f64 {
-        body_radius + model.proximity_range_mm[1] / (1.0 - model.noise)
+    pub(super) fn proximity_reach(settings: &SensorSettings, body_radius: f64) -> f64 {
+        body_radius + settings.proximity_range_mm[1] / (1.0 - settings.noise)
     }
 
     /// Proximity readings in millimetres from the body's surface, in the order of

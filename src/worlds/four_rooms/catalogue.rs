@@ -100,11 +100,13 @@ pub(super) fn catalogue(goal: Place) -> Catalogue {
             "in the eastern hallway",
             "in the southern hallway",
         ]
-        .map(|description| StateTypeInfo { description })
+        .map(|description| StateTypeInfo {
+            description: String::from(description),
+        })
         .into(),
         subtasks: composites(goal).chain(primitives()).collect(),
         maps: vec![FeatureMap {
-            name: "cell",
+            name: String::from("cell"),
             kind: FeatureKind::Table(vec![Index {
                 input: 0,
                 values: CELLS,
@@ -120,8 +122,8 @@ fn types(places: impl IntoIterator<Item = Place>) -> StateTypes {
 
 fn composites(goal: Place) -> impl Iterator<Item = Subtask> {
     let composite = |name, purpose, active, goal, weight| Subtask {
-        name,
-        purpose,
+        name: String::from(name),
+        purpose: String::from(purpose),
         active,
         map: CELL,
         kind: Kind::Composite {
@@ -147,9 +149,9 @@ fn composites(goal: Place) -> impl Iterator<Item = Subtask> {
 }
 
 fn primitives() -> [Subtask; 4] {
-    let primitive = |name: &'static str, purpose| Subtask {
-        name,
-        purpose,
+    let primitive = |name: &str, purpose| Subtask {
+        name: String::from(name),
+        purpose: String::from(purpose),
         active: types(Place::ALL),
         map: CELL,
         kind: Kind::Primitive {

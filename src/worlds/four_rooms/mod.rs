@@ -16,18 +16,18 @@
 //! what lies around the goal.
 
 mod catalogue;
-mod exact;
 mod house;
-mod model;
+mod mdp;
 mod scene;
+mod settings;
 
 use rand::RngExt;
 
 use self::catalogue::{AT_GOAL, DOWN, INPUTS, LEFT, RIGHT};
 use self::house::{CELLS, House};
-pub use self::model::FourRoomsModel;
-use super::finite::FiniteModel;
+pub use self::settings::FourRoomsSettings;
 use super::grid::{Direction, any_of};
+use super::mdp::Mdp;
 use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::{Check, Problem};
@@ -41,7 +41,7 @@ pub type Percept = [f32; INPUTS];
 pub struct FourRoomsWorld {
     catalogue: Catalogue,
     house: House,
-    model: FourRoomsModel,
+    settings: FourRoomsSettings,
     goal: usize,
 }
 
@@ -50,13 +50,13 @@ impl FourRoomsWorld {
     ///
     /// # Errors
     /// When the goal lies in a wall or outside.
-    pub fn new(model: &FourRoomsModel) -> Result<Self, Problem> {
+    pub fn new(settings: &FourRoomsSettings) -> Result<Self, Problem> {
         let house = House::new();
-        let goal = house.goal(model.goal_cell)?;
+        let goal = house.goal(settings.goal_cell)?;
         Ok(Self {
             catalogue: catalogue::catalogue(house.place(goal)),
             house,
-            model: model.clone(),
+            settings: settings.clone(),
             goal,
         })
     }
@@ -70,8 +70,8 @@ impl FourRoomsWorld {
     fn walk(&self, cell: usize, direction: Direction) -> (usize, f64) {
         let to = self.house.to(cell, direction);
         match to == self.goal {
-            true => (to, self.model.goal_reward),
-            false => (to, self.model.step_reward),
+            true => (to, self.settings.goal_reward),
+            false => (to, self.settings.step_reward),
         }
     }
 }
@@ -85,7 +85,7 @@ fn direction(primitive: SubtaskId) -> Direction {
     }
 }
 
-impl Settings for FourRoomsModel {
+impl Settings for FourRoomsSettings {
     type World = FourRoomsWorld;
 
     fn check(&self, check: &mut Check) {
@@ -126,7 +126,7 @@ impl World for FourRoomsWorld {
 
     fn step(&self, state: &mut usize, primitive: SubtaskId, _: usize, rng: &mut Stream) -> f32 {
         let mut towards = direction(primitive);
-        if rng.random_bool(self.model.slip) {
+        if rng.random_bool(self.settings.slip) {
             towards = towards.others()[rng.random_range(0..3_usize)];
         }
         let (to, reward) = self.walk(*state, towards);
@@ -151,11 +151,11 @@ impl World for FourRoomsWorld {
         any_of(cells, rng).map(|cell| self.percept(&cell))
     }
 
-    fn hand_made(&self) -> Option<&'static str> {
+    fn hand_made(&self) -> Option<&str> {
         Some(catalogue::HAND_MADE)
     }
 
-    fn finite(&self) -> Option<FiniteModel<Percept>> {
-        Some(self.exact())
+    fn mdp(&self) -> Option<Mdp<Percept>> {
+        Some(self.as_mdp())
     }
 }

@@ -13,7 +13,7 @@ impl Scenic for FourRoomsWorld {
         let inner = (0..CELLS).filter(|&cell| !self.house.is_free(cell));
         Scenery {
             extent: SHAPE.extent(),
-            unit: "cells",
+            unit: String::from("cells"),
             grid: Some([SHAPE.columns, SHAPE.rows]),
             walls: outer_walls(SHAPE)
                 .into_iter()

@@ -1,7 +1,7 @@
 //! The subtasks of the taxi problem (Thesis Figures 2.7 and 3.1) and what their value
 //! functions look at (Dietterich 2000, section 5).
 
-use super::TaxiModel;
+use super::TaxiSettings;
 use super::city::City;
 use crate::worlds::{
     Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,
@@ -60,13 +60,13 @@ const PUTDOWN_LEGAL: MapId = MapId(5);
 const NOTHING: MapId = MapId(6);
 
 /// The number of places where a passenger can be.
-pub(super) fn passenger_places(city: &City, model: &TaxiModel) -> usize {
+pub(super) fn passenger_places(city: &City, settings: &TaxiSettings) -> usize {
     // Whether he can still change his mind belongs to the state where he ever can.
-    let fickle = usize::from(model.change_of_mind > 0.0);
+    let fickle = usize::from(settings.change_of_mind > 0.0);
     city.stands.len() + 1 + fickle
 }
 
-pub(super) fn catalogue(city: &City, model: &TaxiModel) -> Catalogue {
+pub(super) fn catalogue(city: &City, settings: &TaxiSettings) -> Catalogue {
     Catalogue {
         state_types: [
             "passenger waits, taxi elsewhere",
@@ -74,13 +74,15 @@ pub(super) fn catalogue(city: &City, model: &TaxiModel) -> Catalogue {
             "passenger in taxi, not at destination",
             "passenger in taxi, at destination",
         ]
-        .map(|description| StateTypeInfo { description })
+        .map(|description| StateTypeInfo {
+            description: String::from(description),
+        })
         .into(),
-        subtasks: composites(model.state_abstraction)
+        subtasks: composites(settings.state_abstraction)
             .into_iter()
-            .chain(primitives(model.state_abstraction))
+            .chain(primitives(settings.state_abstraction))
             .collect(),
-        maps: maps(city, model),
+        maps: maps(city, settings),
     }
 }
 
@@ -88,8 +90,8 @@ fn composites(abstraction: bool) -> [Subtask; 5] {
     use {AT_DESTINATION as A, AT_PASSENGER as P, DELIVERED as D, RIDING as R, WAITING as W};
     let composite =
         |name, purpose, active: &[StateType], goal: &[StateType], weight, map| Subtask {
-            name,
-            purpose,
+            name: String::from(name),
+            purpose: String::from(purpose),
             active: StateTypes::of(active),
             map: if abstraction { map } else { STATE },
             kind: Kind::Composite {
@@ -144,9 +146,9 @@ fn composites(abstraction: bool) -> [Subtask; 5] {
 }
 
 fn primitives(abstraction: bool) -> [Subtask; 6] {
-    let primitive = |name: &'static str, purpose, map| Subtask {
-        name,
-        purpose,
+    let primitive = |name: &str, purpose, map| Subtask {
+        name: String::from(name),
+        purpose: String::from(purpose),
         active: StateTypes::of(&[WAITING, AT_PASSENGER, RIDING, AT_DESTINATION]),
         map: if abstraction { map } else { STATE },
         kind: Kind::Primitive {
@@ -163,14 +165,14 @@ fn primitives(abstraction: bool) -> [Subtask; 6] {
     ]
 }
 
-fn maps(city: &City, model: &TaxiModel) -> Vec<FeatureMap> {
+fn maps(city: &City, settings: &TaxiSettings) -> Vec<FeatureMap> {
     let index = |input, values| Index { input, values };
     let cell = index(0, city.cells());
-    let passenger = index(1, passenger_places(city, model));
+    let passenger = index(1, passenger_places(city, settings));
     let destination = index(2, city.stands.len());
     let target = index(3, city.stands.len());
     let table = |name, indices| FeatureMap {
-        name,
+        name: String::from(name),
         kind: FeatureKind::Table(indices),
     };
     vec![
@@ -193,9 +195,9 @@ mod tests {
 
     #[test]
     fn numbers_of_values_are_those_of_dietterichs_abstraction() {
-        let model = TaxiModel::default();
-        let city = City::read(&model.map).unwrap();
-        let catalogue = catalogue(&city, &model);
+        let settings = TaxiSettings::default();
+        let city = City::read(&settings.map).unwrap();
+        let catalogue = catalogue(&city, &settings);
         let id = |name| catalogue.find(name).unwrap();
         for (name, expected) in [
             ("Get", GET),

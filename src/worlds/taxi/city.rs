@@ -172,7 +172,7 @@ impl City {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worlds::taxi::model::MAP;
+    use crate::worlds::taxi::settings::MAP;
 
     fn read(map: &[&str]) -> Result<City, String> {
         let lines: Vec<_> = map.iter().map(|&line| line.to_owned()).collect();

@@ -23,9 +23,9 @@
 
 mod catalogue;
 mod city;
-mod exact;
-mod model;
+mod mdp;
 mod scene;
+mod settings;
 
 use rand::RngExt;
 
@@ -34,8 +34,8 @@ use self::catalogue::{
     WEST,
 };
 use self::city::{City, Direction};
-pub use self::model::TaxiModel;
-use super::finite::FiniteModel;
+pub use self::settings::TaxiSettings;
+use super::mdp::Mdp;
 use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::{Check, Problem};
@@ -75,7 +75,7 @@ pub type Percept = [f32; INPUTS];
 pub struct TaxiWorld {
     catalogue: Catalogue,
     city: City,
-    model: TaxiModel,
+    settings: TaxiSettings,
 }
 
 /// What chance decides in a step.
@@ -106,12 +106,12 @@ impl TaxiWorld {
     ///
     /// # Errors
     /// When the map is not that of a city.
-    pub fn new(model: &TaxiModel) -> Result<Self, Problem> {
-        let city = City::read(&model.map)?;
+    pub fn new(settings: &TaxiSettings) -> Result<Self, Problem> {
+        let city = City::read(&settings.map)?;
         Ok(Self {
-            catalogue: catalogue::catalogue(&city, model),
+            catalogue: catalogue::catalogue(&city, settings),
             city,
-            model: model.clone(),
+            settings: settings.clone(),
         })
     }
 
@@ -138,7 +138,7 @@ impl TaxiWorld {
             (PICKUP, Passenger::Waiting(_)) => {
                 let there = self.is_at_target(state);
                 if there {
-                    state.passenger = match self.model.change_of_mind > 0.0 {
+                    state.passenger = match self.settings.change_of_mind > 0.0 {
                         true => Passenger::Boarded,
                         false => Passenger::Riding,
                     };
@@ -147,7 +147,7 @@ impl TaxiWorld {
             }
             (PUTDOWN, Passenger::Boarded | Passenger::Riding) if self.is_at_target(state) => {
                 state.passenger = Passenger::Delivered;
-                return self.model.step_reward + self.model.delivery_reward;
+                return self.settings.step_reward + self.settings.delivery_reward;
             }
             (PICKUP | PUTDOWN, _) => false,
             _ => {
@@ -158,9 +158,9 @@ impl TaxiWorld {
         let penalty = if legal {
             0.0
         } else {
-            self.model.illegal_reward
+            self.settings.illegal_reward
         };
-        self.model.step_reward + penalty
+        self.settings.step_reward + penalty
     }
 
     fn drive(&self, state: &mut TaxiState, meant: Direction, chance: Chance) {
@@ -185,14 +185,14 @@ impl TaxiWorld {
         if matches!(primitive, PICKUP | PUTDOWN) {
             return chance;
         }
-        if self.model.slip > 0.0 {
+        if self.settings.slip > 0.0 {
             let draw: f64 = rng.random();
-            if draw < self.model.slip {
-                let right = draw < self.model.slip / 2.0;
+            if draw < self.settings.slip {
+                let right = draw < self.settings.slip / 2.0;
                 chance.slip = if right { Slip::Right } else { Slip::Left };
             }
         }
-        if state.passenger == Passenger::Boarded && rng.random_bool(self.model.change_of_mind) {
+        if state.passenger == Passenger::Boarded && rng.random_bool(self.settings.change_of_mind) {
             let others = self.city.stands.len() as u8 - 1;
             chance.whim = Some(rng.random_range(0..others));
         }
@@ -210,7 +210,7 @@ fn direction(primitive: SubtaskId) -> Direction {
     }
 }
 
-impl Settings for TaxiModel {
+impl Settings for TaxiSettings {
     type World = TaxiWorld;
 
     fn check(&self, check: &mut Check) {
@@ -296,14 +296,14 @@ impl World for TaxiWorld {
     }
 
     /// Thesis Figures 2.7 and 3.1.
-    fn hand_made(&self) -> Option<&'static str> {
+    fn hand_made(&self) -> Option<&str> {
         Some(
             "(Root (Get (NavigateToPassenger North South East West) Pickup) \
              (Put (NavigateToDestination North South East West) Putdown))",
         )
     }
 
-    fn finite(&self) -> Option<FiniteModel<Percept>> {
-        Some(self.exact())
+    fn mdp(&self) -> Option<Mdp<Percept>> {
+        Some(self.as_mdp())
     }
 }

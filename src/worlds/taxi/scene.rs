@@ -21,7 +21,7 @@ impl Scenic for TaxiWorld {
         let stands = self.city.stands.iter();
         Scenery {
             extent: cells.extent(),
-            unit: "cells",
+            unit: String::from("cells"),
             grid: Some([cells.columns, cells.rows]),
             walls: outer_walls(cells)
                 .into_iter()

@@ -100,7 +100,7 @@ impl Table {
         let lit = self.path.contains(&node);
         let dim = look.style(Paint::Dim);
         let line = self.lines.get(node).map_or("", |line| line);
-        let branches = width(line).saturating_sub(width(subtask.name));
+        let branches = width(line).saturating_sub(width(&subtask.name));
         let branches: String = line.chars().take(branches).collect();
         let is_selected = node == self.selected;
         if is_selected {
@@ -123,7 +123,13 @@ impl Table {
             (false, true) => Paint::Title,
             (false, false) => Paint::Text,
         };
-        put(buffer, area, (column, row), subtask.name, look.style(paint));
+        put(
+            buffer,
+            area,
+            (column, row),
+            &subtask.name,
+            look.style(paint),
+        );
         if let Some(column) = self.types {
             let types =
                 catalogue

@@ -30,7 +30,7 @@ pub(super) fn lines(
     let mut lines = Vec::new();
     for (index, shares) in selection.iter().enumerate() {
         let about = catalogue.state_types.get(index);
-        let about = about.map_or("", |info| info.description);
+        let about = about.map_or("", |info| &info.description);
         let title = format!("{} {about}", index + 1);
         let title = wrapped(&title, columns, "  ").into_iter();
         lines.extend(title.map(|line| Pen::new(look).text(line, Paint::Title).line()));
@@ -40,7 +40,7 @@ pub(super) fn lines(
             continue;
         };
         for (place, (primitive, &share)) in catalogue.primitives().zip(shares).enumerate() {
-            let name = catalogue.subtask(primitive).name;
+            let name = primitive.name(catalogue);
             let mean = mean(desk, index, name);
             if share < LEAST && mean.is_none_or(|mean| mean < LEAST) {
                 continue;
@@ -76,7 +76,7 @@ pub(super) fn csv(desk: &Desk, selection: &SelectionProbabilities) -> String {
     for (index, shares) in selection.iter().enumerate() {
         let shares = shares.iter().flatten();
         for (primitive, share) in catalogue.primitives().zip(shares) {
-            let name = catalogue.subtask(primitive).name;
+            let name = primitive.name(catalogue);
             // Writing to a string cannot fail.
             let _ = writeln!(csv, "{},{name},{share}", index + 1);
         }

@@ -54,8 +54,8 @@ struct Shown<'s> {
 
 impl Shown<'_> {
     /// The subtask of a node.
-    fn name(&self, node: usize) -> &'static str {
-        self.catalogue.subtask(self.tree.subtask(node)).name
+    fn name(&self, node: usize) -> &str {
+        self.tree.subtask(node).name(self.catalogue)
     }
 
     /// The actions of a primitive node.

@@ -1,21 +1,21 @@
-//! Four rooms as a finite model.
+//! Four rooms as a finite MDP.
 
 use super::catalogue::{CELL, DOWN, LEFT, RIGHT, UP};
 use super::house::CELLS;
 use super::{FourRoomsWorld, Percept, direction};
-use crate::worlds::finite::{FiniteModel, FiniteState, Outcome};
+use crate::worlds::mdp::{Mdp, MdpState, Outcome};
 use crate::worlds::{SubtaskId, World};
 
 const ACTIONS: [SubtaskId; 4] = [UP, DOWN, RIGHT, LEFT];
 
 impl FourRoomsWorld {
     /// All cells with what can come of every action.
-    pub(super) fn exact(&self) -> FiniteModel<Percept> {
+    pub(super) fn as_mdp(&self) -> Mdp<Percept> {
         let states = (0..CELLS).map(|cell| {
             let exists = self.house.is_free(cell);
             exists.then(|| self.finite_state(cell))
         });
-        FiniteModel {
+        Mdp {
             table: CELL,
             gaussian: None,
             actions: ACTIONS.map(|primitive| (primitive, 0)).into(),
@@ -23,9 +23,9 @@ impl FourRoomsWorld {
         }
     }
 
-    fn finite_state(&self, cell: usize) -> FiniteState<Percept> {
+    fn finite_state(&self, cell: usize) -> MdpState<Percept> {
         let at_goal = cell == self.goal;
-        FiniteState {
+        MdpState {
             state_type: self.state_type(&cell),
             percept: self.percept(&cell),
             start: match at_goal {
@@ -43,8 +43,10 @@ impl FourRoomsWorld {
 
     fn outcomes(&self, cell: usize, primitive: SubtaskId) -> Vec<Outcome> {
         let meant = direction(primitive);
-        let slips = meant.others().map(|other| (self.model.slip / 3.0, other));
-        let straight = std::iter::once((1.0 - self.model.slip, meant));
+        let slips = meant
+            .others()
+            .map(|other| (self.settings.slip / 3.0, other));
+        let straight = std::iter::once((1.0 - self.settings.slip, meant));
         let all = straight.chain(slips).filter(|&(chance, _)| chance > 0.0);
         all.map(|(probability, direction)| {
             let (next, reward) = self.walk(cell, direction);

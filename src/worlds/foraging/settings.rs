@@ -4,29 +4,29 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::defaults as d;
-use crate::worlds::{Exploration, TrainingModel};
+use crate::worlds::{Exploration, TrainingSettings};
 
 /// A robot finds a battery, captures it and brings it to the nest (Thesis 4.2).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ForagingModel {
+pub struct ForagingSettings {
     /// Walls, batteries and the nest.
-    pub arena: ArenaModel,
+    pub arena: ArenaSettings,
     /// Body of the robot and the distances at which it captures and delivers.
     #[serde(default)]
-    pub robot: RobotModel,
+    pub robot: RobotSettings,
     /// Proximity sensors, vision and their noise.
     #[serde(default)]
-    pub sensors: SensorModel,
+    pub sensors: SensorSettings,
     /// Actions and rewards of the five primitive subtasks (Thesis Table 4.4, Eq. 4.1).
     #[serde(default)]
-    pub primitives: PrimitiveModels,
+    pub primitives: PrimitiveSettings,
     /// Numbers of RBF centres (Thesis Table 4.6).
     #[serde(default)]
-    pub features: FeatureModel,
+    pub features: FeatureSettings,
     /// How the primitive subtasks are trained before evolution starts.
     #[serde(default)]
-    pub primitive_training: TrainingModels,
+    pub primitive_training: PrimitiveTraining,
     /// Length of a time step in seconds.
     #[serde(default = "time_step")]
     pub time_step_s: f64,
@@ -39,7 +39,7 @@ fn time_step() -> f64 {
 /// A closed rectangle from the origin to `size_mm`, with what is in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct ArenaModel {
+pub struct ArenaSettings {
     /// Extent along x and y in millimetres; the four outer walls stand on its edges.
     #[serde(default = "arena_size")]
     pub size_mm: [f64; 2],
@@ -48,7 +48,7 @@ pub struct ArenaModel {
     pub walls_mm: Vec<[f64; 4]>,
     /// Inner walls with slits in them.
     #[serde(default)]
-    pub fences: Vec<FenceModel>,
+    pub fences: Vec<FenceSettings>,
     /// Centres of the battery packs, `[x, y]`.
     pub batteries_mm: Vec<[f64; 2]>,
     /// Centre of the nest, `[x, y]`.
@@ -63,7 +63,7 @@ fn arena_size() -> [f64; 2] {
 /// not passed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct FenceModel {
+pub struct FenceSettings {
     /// One end, `[x, y]`.
     pub from_mm: [f64; 2],
     /// The other end, `[x, y]`.
@@ -74,7 +74,7 @@ pub struct FenceModel {
     pub slits_at_mm: Vec<f64>,
 }
 
-impl FenceModel {
+impl FenceSettings {
     /// Distance between the two ends in millimetres.
     #[must_use]
     pub fn length_mm(&self) -> f64 {
@@ -111,7 +111,7 @@ impl FenceModel {
 /// The robot: a disc with two driven wheels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct RobotModel {
+pub struct RobotSettings {
     /// Radius of the body.
     pub radius_mm: f64,
     /// Distance between the wheels.
@@ -122,7 +122,7 @@ pub struct RobotModel {
     pub delivery_distance_mm: f64,
 }
 
-impl Default for RobotModel {
+impl Default for RobotSettings {
     fn default() -> Self {
         Self {
             radius_mm: d::ROBOT_RADIUS_MM,
@@ -136,7 +136,7 @@ impl Default for RobotModel {
 /// What the robot senses (Thesis 4.1).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct SensorModel {
+pub struct SensorSettings {
     /// Directions of the five proximity sensors, relative to the heading, positive
     /// to the left.
     pub proximity_angles_deg: [f64; 5],
@@ -151,7 +151,7 @@ pub struct SensorModel {
     pub noise: f64,
 }
 
-impl Default for SensorModel {
+impl Default for SensorSettings {
     fn default() -> Self {
         Self {
             proximity_angles_deg: d::PROXIMITY_ANGLES_DEG,
@@ -166,41 +166,41 @@ impl Default for SensorModel {
 /// The five primitive subtasks (Thesis Tables 4.3 and 4.4, Eq. 4.1).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct PrimitiveModels {
+pub struct PrimitiveSettings {
     /// Avoid hitting walls.
-    pub avoid: MovementModel,
+    pub avoid: MovementSettings,
     /// Explore the environment.
-    pub wander: MovementModel,
+    pub wander: MovementSettings,
     /// Approach and capture a battery.
-    pub approach_battery: TargetModel,
+    pub approach_battery: TargetSettings,
     /// Bring the battery to the nest.
-    pub approach_nest: TargetModel,
+    pub approach_nest: TargetSettings,
     /// Rotate to a battery or the nest.
-    pub turn: TargetModel,
+    pub turn: TargetSettings,
 }
 
-impl Default for PrimitiveModels {
+impl Default for PrimitiveSettings {
     fn default() -> Self {
-        let approach = TargetModel {
+        let approach = TargetSettings {
             actions_mm_per_s: d::APPROACH_ACTIONS.to_vec(),
             reward_offset: 0.0,
             reward_divisor_deg: d::APPROACH_REWARD_DIVISOR_DEG,
             failure_reward: d::FAILURE_REWARD,
         };
         Self {
-            avoid: MovementModel {
+            avoid: MovementSettings {
                 actions_mm_per_s: d::AVOID_ACTIONS.to_vec(),
                 rewards: d::AVOID_REWARDS.to_vec(),
                 failure_reward: d::FAILURE_REWARD,
             },
-            wander: MovementModel {
+            wander: MovementSettings {
                 actions_mm_per_s: d::WANDER_ACTIONS.to_vec(),
                 rewards: d::WANDER_REWARDS.to_vec(),
                 failure_reward: d::FAILURE_REWARD,
             },
             approach_battery: approach.clone(),
             approach_nest: approach,
-            turn: TargetModel {
+            turn: TargetSettings {
                 actions_mm_per_s: d::TURN_ACTIONS.to_vec(),
                 reward_offset: d::TURN_REWARD_OFFSET,
                 reward_divisor_deg: d::TURN_REWARD_DIVISOR_DEG,
@@ -213,7 +213,7 @@ impl Default for PrimitiveModels {
 /// A primitive subtask that is rewarded for its movement: Avoid, Wander.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct MovementModel {
+pub struct MovementSettings {
     /// Actions as `[right, left]` wheel speeds, in that order.
     pub actions_mm_per_s: Vec<[f64; 2]>,
     /// Reward of each action while no wall is too near.
@@ -226,7 +226,7 @@ pub struct MovementModel {
 /// battery, Approach nest, Turn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct TargetModel {
+pub struct TargetSettings {
     /// Actions as `[right, left]` wheel speeds, in that order.
     pub actions_mm_per_s: Vec<[f64; 2]>,
     /// The reward is `reward_offset` minus the angle over `reward_divisor_deg`.
@@ -240,7 +240,7 @@ pub struct TargetModel {
 /// Numbers of RBF centres along each input (Thesis Table 4.6).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct FeatureModel {
+pub struct FeatureSettings {
     /// Per proximity sensor; their product over five sensors is the width of Find
     /// battery, Find nest, Avoid and Wander, and of each state type's block in
     /// Capture, Deliver and Root.
@@ -257,7 +257,7 @@ pub struct FeatureModel {
     pub rbf_width: RbfWidth,
 }
 
-impl Default for FeatureModel {
+impl Default for FeatureSettings {
     fn default() -> Self {
         Self {
             proximity_centres: d::PROXIMITY_CENTRES,
@@ -284,28 +284,28 @@ pub enum RbfWidth {
 /// Training of the primitive subtasks, each alone, in the scenario's own arena.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct TrainingModels {
+pub struct PrimitiveTraining {
     /// Training of Avoid.
-    pub avoid: TrainingModel,
+    pub avoid: TrainingSettings,
     /// Training of Wander.
-    pub wander: TrainingModel,
+    pub wander: TrainingSettings,
     /// Training of Approach battery.
-    pub approach_battery: TrainingModel,
+    pub approach_battery: TrainingSettings,
     /// Training of Approach nest.
-    pub approach_nest: TrainingModel,
+    pub approach_nest: TrainingSettings,
     /// Training of Turn.
-    pub turn: TrainingModel,
+    pub turn: TrainingSettings,
 }
 
-impl Default for TrainingModels {
+impl Default for PrimitiveTraining {
     fn default() -> Self {
-        let exploring = TrainingModel {
+        let exploring = TrainingSettings {
             steps: d::TRAINING_STEPS,
             episode_steps: d::EXPLORING_EPISODE_STEPS,
             exploration: Exploration::Uniform,
             temperature_decrease: d::EXPLORING_TEMPERATURE_DECREASE,
         };
-        let targeting = TrainingModel {
+        let targeting = TrainingSettings {
             steps: d::TRAINING_STEPS,
             episode_steps: d::TARGET_EPISODE_STEPS,
             exploration: Exploration::Softmax,
@@ -326,7 +326,7 @@ pub(super) mod tests {
     use super::*;
 
     /// The settings of a shipped environment.
-    pub(in super::super) fn environment(number: usize) -> ForagingModel {
+    pub(in super::super) fn environment(number: usize) -> ForagingSettings {
         let scenarios = concat!(env!("CARGO_MANIFEST_DIR"), "/scenarios");
         let text = std::fs::read_to_string(format!("{scenarios}/environment-{number}.json"));
         let mut scenario: serde_json::Value = serde_json::from_str(&text.unwrap()).unwrap();
@@ -335,7 +335,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_fence_is_cut_at_its_slits() {
-        let fence = FenceModel {
+        let fence = FenceSettings {
             from_mm: [2000.0, 1400.0],
             to_mm: [2000.0, 2000.0],
             slit_width_mm: 44.0,

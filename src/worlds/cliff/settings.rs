@@ -19,7 +19,7 @@ const RBF_WIDTH_CELLS: f64 = 1.0 / 3.0;
 /// lower right one, and between the two is the cliff.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct CliffModel {
+pub struct CliffSettings {
     /// Columns of the grid.
     pub width: usize,
     /// Rows of the grid.
@@ -35,7 +35,7 @@ pub struct CliffModel {
     pub rbf_width_cells: f64,
 }
 
-impl Default for CliffModel {
+impl Default for CliffSettings {
     fn default() -> Self {
         Self {
             width: WIDTH,

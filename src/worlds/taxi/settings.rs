@@ -22,7 +22,7 @@ const ILLEGAL_REWARD: f64 = -10.0;
 /// A taxi fetches a passenger at one stand and brings him to another (Thesis Figure 2.6).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct TaxiModel {
+pub struct TaxiSettings {
     /// The city from north to south, a line a row: every cell is a space or the capital
     /// letter of a stand, and between two cells is `|` for a wall, `:` for none.
     pub map: Vec<String>,
@@ -43,7 +43,7 @@ pub struct TaxiModel {
     pub state_abstraction: bool,
 }
 
-impl Default for TaxiModel {
+impl Default for TaxiSettings {
     fn default() -> Self {
         Self {
             map: MAP.map(String::from).into(),

@@ -1,20 +1,20 @@
-//! The cliff walk as a finite model.
+//! The cliff walk as a finite MDP.
 
 use super::catalogue::{AT_GOAL, CELL, DOWN, LEFT, PLACE, RIGHT, UP};
 use super::{CliffWorld, Percept};
-use crate::worlds::finite::{FiniteModel, FiniteState, Outcome};
+use crate::worlds::mdp::{Mdp, MdpState, Outcome};
 use crate::worlds::{SubtaskId, World};
 
 const ACTIONS: [SubtaskId; 4] = [UP, DOWN, RIGHT, LEFT];
 
 impl CliffWorld {
     /// All cells with what comes of every action; nobody is ever in the cliff.
-    pub(super) fn exact(&self) -> FiniteModel<Percept> {
+    pub(super) fn as_mdp(&self) -> Mdp<Percept> {
         let states = (0..self.count()).map(|cell| {
             let exists = !self.is_cliff(cell);
             exists.then(|| self.finite_state(cell))
         });
-        FiniteModel {
+        Mdp {
             table: CELL,
             gaussian: Some(PLACE),
             actions: ACTIONS.map(|primitive| (primitive, 0)).into(),
@@ -22,7 +22,7 @@ impl CliffWorld {
         }
     }
 
-    fn finite_state(&self, cell: usize) -> FiniteState<Percept> {
+    fn finite_state(&self, cell: usize) -> MdpState<Percept> {
         let state_type = self.state_type(&cell);
         let outcome = |primitive| {
             let (next, reward) = self.act(cell, primitive);
@@ -34,7 +34,7 @@ impl CliffWorld {
         };
         let starts = self.beginnings();
         let share = 1.0 / (starts.end() - starts.start() + 1) as f64;
-        FiniteState {
+        MdpState {
             state_type,
             percept: self.percept(&cell),
             start: if starts.contains(&cell) { share } else { 0.0 },

@@ -24,7 +24,7 @@ pub struct Outcome {
 
 /// A state of a finite world.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FiniteState<P> {
+pub struct MdpState<P> {
     /// Its type.
     pub state_type: StateType,
     /// What the agent perceives in it.
@@ -37,7 +37,7 @@ pub struct FiniteState<P> {
 
 /// A whole world: its states are numbered as the features of its `table` are.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FiniteModel<P> {
+pub struct Mdp<P> {
     /// The feature map that tells all states apart.
     pub table: MapId,
     /// A feature map of Gaussians over all that matters, if the world has one.
@@ -45,13 +45,13 @@ pub struct FiniteModel<P> {
     /// The actions: primitive subtasks and the index of the action there.
     pub actions: Vec<(SubtaskId, usize)>,
     /// The states; `None` where no state has this number.
-    pub states: Vec<Option<FiniteState<P>>>,
+    pub states: Vec<Option<MdpState<P>>>,
 }
 
 /// For each state the probability of each action.
 pub type PolicyTable = Vec<Vec<f64>>;
 
-impl<P> FiniteModel<P> {
+impl<P> Mdp<P> {
     /// The optimal values (Thesis Eq. 2.10), by value iteration, and how many sweeps over
     /// all states these took.
     #[must_use]
@@ -84,7 +84,7 @@ impl<P> FiniteModel<P> {
     /// The policy that takes the best actions for these values, equally good ones alike.
     #[must_use]
     pub fn best_policy(&self, values: &[f64], discount: f64) -> PolicyTable {
-        let best = |state: &FiniteState<P>| -> Vec<f64> {
+        let best = |state: &MdpState<P>| -> Vec<f64> {
             let outcomes = state.outcomes.iter();
             let q: Vec<_> = outcomes.map(|o| expected(o, values, discount)).collect();
             let highest = q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -117,7 +117,7 @@ impl<P> FiniteModel<P> {
     }
 
     /// The states that are no holes in the numbering.
-    pub fn existing(&self) -> impl Iterator<Item = (usize, &FiniteState<P>)> {
+    pub fn existing(&self) -> impl Iterator<Item = (usize, &MdpState<P>)> {
         let states = self.states.iter().enumerate();
         states.filter_map(|(index, state)| Some((index, state.as_ref()?)))
     }
@@ -125,7 +125,7 @@ impl<P> FiniteModel<P> {
     fn iterate(
         &self,
         sweeps: usize,
-        backup: impl Fn(usize, &FiniteState<P>, &[f64]) -> f64,
+        backup: impl Fn(usize, &MdpState<P>, &[f64]) -> f64,
     ) -> (Vec<f64>, usize) {
         let mut values = vec![0.0; self.states.len()];
         for sweep in 0..sweeps {

@@ -13,7 +13,7 @@ const STEP_REWARD: f64 = -1.0;
 /// A house of four rooms with hallways between them, and a goal somewhere in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct FourRoomsModel {
+pub struct FourRoomsSettings {
     /// Column and row of the goal, from 0 at the upper left, within the outer walls.
     pub goal_cell: [usize; 2],
     /// Probability with which a move goes into one of the three other directions, a third
@@ -25,7 +25,7 @@ pub struct FourRoomsModel {
     pub goal_reward: f64,
 }
 
-impl Default for FourRoomsModel {
+impl Default for FourRoomsSettings {
     fn default() -> Self {
         Self {
             goal_cell: GOAL_CELL,

@@ -1,8 +1,8 @@
-//! The taxi world as a finite model.
+//! The taxi world as a finite MDP.
 
 use super::catalogue::{EAST, NORTH, PICKUP, PUTDOWN, SOUTH, STATE, WEST, passenger_places};
 use super::{Chance, Passenger, Percept, Slip, TaxiState, TaxiWorld};
-use crate::worlds::finite::{FiniteModel, FiniteState, Outcome};
+use crate::worlds::mdp::{Mdp, MdpState, Outcome};
 use crate::worlds::{SubtaskId, World};
 
 const ACTIONS: [SubtaskId; 6] = [NORTH, SOUTH, EAST, WEST, PICKUP, PUTDOWN];
@@ -12,9 +12,9 @@ impl TaxiWorld {
     ///
     /// The end of a trial has no number of its own: it is the last state, after those of
     /// the table.
-    pub(super) fn exact(&self) -> FiniteModel<Percept> {
+    pub(super) fn as_mdp(&self) -> Mdp<Percept> {
         let stands = self.city.stands.len();
-        let places = passenger_places(&self.city, &self.model);
+        let places = passenger_places(&self.city, &self.settings);
         let starts = (self.city.cells() * stands * stands) as f64;
         let mut states = Vec::with_capacity(self.city.cells() * places * stands + 1);
         for taxi in 0..self.city.cells() {
@@ -41,11 +41,11 @@ impl TaxiWorld {
             passenger: Passenger::Delivered,
             destination: 0,
         };
-        states.push(Some(FiniteState {
+        states.push(Some(MdpState {
             outcomes: Vec::new(),
             ..self.finite_state(&end, 0.0)
         }));
-        FiniteModel {
+        Mdp {
             table: STATE,
             gaussian: None,
             actions: ACTIONS.map(|primitive| (primitive, 0)).into(),
@@ -53,7 +53,7 @@ impl TaxiWorld {
         }
     }
 
-    fn finite_state(&self, state: &TaxiState, start: f64) -> FiniteState<Percept> {
+    fn finite_state(&self, state: &TaxiState, start: f64) -> MdpState<Percept> {
         let outcomes = ACTIONS.map(|primitive| {
             let chances = self.chances(state, primitive).into_iter();
             let outcome = |(probability, chance)| {
@@ -67,7 +67,7 @@ impl TaxiWorld {
             };
             chances.map(outcome).collect()
         });
-        FiniteState {
+        MdpState {
             state_type: self.state_type(state),
             percept: self.percept(state),
             start,
@@ -78,7 +78,7 @@ impl TaxiWorld {
     /// The number of a state: its feature in the table.
     fn number(&self, state: &TaxiState) -> usize {
         let stands = self.city.stands.len();
-        let places = passenger_places(&self.city, &self.model);
+        let places = passenger_places(&self.city, &self.settings);
         let place = match state.passenger {
             Passenger::Waiting(stand) => usize::from(stand),
             Passenger::Riding => stands,
@@ -93,16 +93,16 @@ impl TaxiWorld {
         if matches!(primitive, PICKUP | PUTDOWN) {
             return vec![(1.0, Chance::NONE)];
         }
-        let half = self.model.slip / 2.0;
+        let half = self.settings.slip / 2.0;
         let mut whims = vec![(1.0, None)];
         if state.passenger == Passenger::Boarded {
             let others = self.city.stands.len() as u8 - 1;
-            let share = self.model.change_of_mind / f64::from(others);
-            whims = vec![(1.0 - self.model.change_of_mind, None)];
+            let share = self.settings.change_of_mind / f64::from(others);
+            whims = vec![(1.0 - self.settings.change_of_mind, None)];
             whims.extend((0..others).map(|whim| (share, Some(whim))));
         }
         let slips = [
-            (1.0 - self.model.slip, Slip::Straight),
+            (1.0 - self.settings.slip, Slip::Straight),
             (half, Slip::Right),
             (half, Slip::Left),
         ];
