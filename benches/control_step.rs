@@ -11,7 +11,7 @@ use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use maxq_lab::hierarchy::parse;
-use maxq_lab::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Trainee};
+use maxq_lab::learning::{Agent, Encoder, Gate, Hierarchy, PrimitiveSet, PrimitiveTrainer};
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::World;
@@ -37,26 +37,26 @@ fn control_step(criterion: &mut Criterion) {
         let trained = world.catalogue().primitives().map(|primitive| {
             let rng = stream(1, 0, primitive.index() as u64, Purpose::PrimitiveTraining);
             let learning = &scenario.learning;
-            let mut trainee = Trainee::new(&world, &encoder, learning, primitive, rng);
-            trainee.train(u32::MAX, &gate).expect("open");
-            trainee.into_skill()
+            let mut trainer = PrimitiveTrainer::new(&world, &encoder, learning, primitive, rng);
+            trainer.train(u32::MAX, &gate).expect("open");
+            trainer.into_values()
         });
-        let skills = Skills::new(trained.collect(), world.catalogue()).expect("complete");
+        let primitives = PrimitiveSet::new(trained.collect(), world.catalogue()).expect("complete");
         let tree = parse(COMPLETE, world.catalogue()).expect("valid");
         let fresh = || {
-            let hierarchy = Hierarchy::new(tree.clone(), world.catalogue(), 2.0, 0.123);
+            let hierarchy = Hierarchy::new(tree.clone(), world.catalogue(), &scenario.learning);
             Agent::new(
                 &world,
                 &encoder,
                 &scenario.learning,
                 hierarchy,
-                skills.clone(),
+                primitives.clone(),
                 2000,
             )
         };
         group.bench_function(name, |bencher| {
             bencher.iter_batched_ref(
-                || (fresh(), stream(1, 0, 0, Purpose::Life)),
+                || (fresh(), stream(1, 0, 0, Purpose::Trials)),
                 |(agent, rng)| {
                     let mut left = STEPS;
                     while left > 0 {

@@ -27,7 +27,7 @@ pub enum Purpose {
     /// The start poses of a generation's trials.
     StartPoses = 3,
     /// One individual's generation: the order of its trials, noise and choices.
-    Life = 4,
+    Trials = 4,
     /// Selection and crossover after a generation.
     Breeding = 5,
     /// The chance that replaces fitness under `selection: random`.
@@ -68,7 +68,7 @@ mod tests {
         for seed in 0..4 {
             for generation in 0..4 {
                 for individual in 0..4 {
-                    let mut rng = stream(seed, generation, individual, Purpose::Life);
+                    let mut rng = stream(seed, generation, individual, Purpose::Trials);
                     assert!(seen.insert(rng.next_u64()));
                 }
             }

@@ -30,12 +30,13 @@ impl WorldTask for Trials {
 
     fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
         let (workers, gate) = (Workers::new(1).unwrap(), Gate::default());
-        let skills = experiment.train(1, 0, &workers, &gate).unwrap();
+        let primitives = experiment.train(1, 0, &workers, &gate).unwrap();
         let trees = &experiment.initial_population;
         let trees = [trees.first().unwrap(), trees.last().unwrap()];
         let counts = trees.map(|tree| {
-            let mut agent = experiment.agent(experiment.newborn(tree.clone()), skills.clone());
-            let mut rng = stream(1, 0, 0, Purpose::Life);
+            let mut agent =
+                experiment.agent(experiment.untrained(tree.clone()), primitives.clone());
+            let mut rng = stream(1, 0, 0, Purpose::Trials);
             let mut trial = |limit| {
                 let start = experiment.world.draw_start(&mut rng);
                 agent.run_trial(&start, limit, &mut rng, &gate).unwrap()
@@ -79,16 +80,16 @@ impl WorldTask for Probabilities {
 
     fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> u64 {
         let (workers, gate) = (Workers::new(1).unwrap(), Gate::default());
-        let skills = experiment.train(1, 0, &workers, &gate).unwrap();
+        let primitives = experiment.train(1, 0, &workers, &gate).unwrap();
         let tree = experiment.initial_population.last().unwrap().clone();
-        let hierarchy = experiment.newborn(tree);
+        let hierarchy = experiment.untrained(tree);
         let mut rng = stream(1, 0, 0, Purpose::PolicySamples);
         let (world, encoder) = (&experiment.world, &experiment.encoder);
         let samples = PolicySamples::draw(world, self.0, &mut rng, &gate).unwrap();
         let model = &experiment.scenario.learning;
         let counted = measure(|| {
             samples
-                .probabilities(world, encoder, model, &hierarchy, &skills, &gate)
+                .probabilities(world, encoder, model, &hierarchy, &primitives, &gate)
                 .unwrap();
         });
         counted.count_total

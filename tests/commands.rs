@@ -522,7 +522,7 @@ fn median(mut durations: Vec<Duration>) -> Duration {
 fn stopping_takes_effect_within_a_tenth_of_a_second() {
     let parent = TempDir::new().unwrap();
     let scenario = Scenario::load("environment-3").unwrap();
-    let mut rng = stream(1, 0, 0, Purpose::Life);
+    let mut rng = stream(1, 0, 0, Purpose::Trials);
     let stops = (0..20).map(|attempt| {
         let mut scenario = scenario.clone();
         // Half of the runs are stopped while primitive subtasks are trained, half of

@@ -76,7 +76,7 @@ fn pausing_and_stepping_at_random_moments_changes_nothing() {
 /// Pauses, steps and resumes until the run is over. It is paused at once, so that it
 /// cannot end before anything was done to it.
 fn disturb(run: &mut Run, round: u64) {
-    let mut rng = stream(round, 0, 0, Purpose::Life);
+    let mut rng = stream(round, 0, 0, Purpose::Trials);
     run.controls.pause();
     let commands: [fn(&Controls); 4] = [
         Controls::pause,

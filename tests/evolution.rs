@@ -21,11 +21,11 @@ mod policy;
 mod trees;
 
 use maxq_lab::evolution::{
-    Evolution, Experiment, GenerationRecord, Individual, Origin, State, Workers,
+    Evolution, EvolutionState, Experiment, GenerationRecord, Individual, Origin, Workers,
 };
 use maxq_lab::hierarchy::{Tree, parse};
-use maxq_lab::learning::{CompositeValues, Gate, Hierarchy, Skill, Skills};
-use maxq_lab::scenario::Scenario;
+use maxq_lab::learning::{CompositeValues, Gate, Hierarchy, PrimitiveSet, PrimitiveValues};
+use maxq_lab::scenario::{LearningSettings, Scenario};
 use maxq_lab::worlds::WorldSettings;
 use maxq_lab::worlds::foraging::ForagingWorld;
 use maxq_lab::worlds::{Catalogue, World};
@@ -57,15 +57,16 @@ fn experiment(scenario: Scenario) -> Experiment<ForagingWorld> {
 }
 
 /// Primitive subtasks that have learned nothing.
-fn untrained(catalogue: &Catalogue) -> Skills {
-    let skills = catalogue.primitives();
-    let skills = skills.map(|primitive| Skill::new(primitive, catalogue, 0.0));
-    Skills::new(skills.collect(), catalogue).unwrap()
+fn untrained(catalogue: &Catalogue) -> PrimitiveSet {
+    let primitives = catalogue.primitives();
+    let primitives = primitives.map(|primitive| PrimitiveValues::new(primitive, catalogue, 0.0));
+    PrimitiveSet::new(primitives.collect(), catalogue).unwrap()
 }
 
 /// An individual with random learned values, no two alike.
 fn learned(id: u64, tree: Tree, catalogue: &Catalogue, rng: &mut SmallRng) -> Individual {
-    let (tree, mut values) = Hierarchy::new(tree, catalogue, 2.0, 0.123).into_parts();
+    let (tree, mut values) =
+        Hierarchy::new(tree, catalogue, &LearningSettings::default()).into_parts();
     for (node, value) in values.iter_mut().enumerate() {
         let Some(value) = value else { continue };
         let mut vectors = value.vectors();
@@ -83,14 +84,14 @@ fn learned(id: u64, tree: Tree, catalogue: &Catalogue, rng: &mut SmallRng) -> In
         id,
         origin: Origin::HandCoded,
         hierarchy: Hierarchy::from_parts(tree, values).unwrap(),
-        skills: None,
+        primitives: None,
     }
 }
 
 /// An evolution of which these individuals are the ranked generation `generation`; 0
 /// means that they have not lived yet.
-fn state(individuals: Vec<Individual>, catalogue: &Catalogue, generation: u64) -> State {
-    State {
+fn state(individuals: Vec<Individual>, catalogue: &Catalogue, generation: u64) -> EvolutionState {
+    EvolutionState {
         generation,
         next_id: individuals
             .iter()
@@ -99,7 +100,7 @@ fn state(individuals: Vec<Individual>, catalogue: &Catalogue, generation: u64) -
             .unwrap_or(0)
             + 1,
         individuals,
-        skills: untrained(catalogue),
+        primitives: untrained(catalogue),
         control_steps: 1000,
         converged: false,
     }
@@ -121,8 +122,8 @@ fn individuals<'t>(
 fn step<W: World>(
     experiment: &Experiment<W>,
     seed: u64,
-    state: State,
-) -> (GenerationRecord, State) {
+    state: EvolutionState,
+) -> (GenerationRecord, EvolutionState) {
     let workers = Workers::new(1).unwrap();
     let gate = Gate::default();
     let evolution = Evolution::resume(experiment, &workers, seed, state, &gate);

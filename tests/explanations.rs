@@ -13,7 +13,7 @@
 
 mod reference;
 
-use maxq_lab::learning::{Agent, Change, Explanation, Hierarchy, Rule, Skills};
+use maxq_lab::learning::{Agent, Change, Explanation, Hierarchy, PrimitiveSet, SelectionRule};
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::worlds::World;
 use maxq_lab::worlds::foraging::ForagingWorld;
@@ -49,9 +49,9 @@ struct Met {
 fn check(lab: &Lab, tree: &str, trials: usize) -> Met {
     let mut met = Met::default();
     let world = &lab.experiment.world;
-    let newborn = lab.newborn(tree);
-    let (mut plain, mut explained) = (lab.agent(newborn.clone()), lab.agent(newborn));
-    let mut rng = stream(11, 0, 0, Purpose::Life);
+    let untrained = lab.untrained(tree);
+    let (mut plain, mut explained) = (lab.agent(untrained.clone()), lab.agent(untrained));
+    let mut rng = stream(11, 0, 0, Purpose::Trials);
     for _ in 0..trials {
         let start = world.draw_start(&mut rng);
         let mut same_rng = rng.clone();
@@ -68,7 +68,7 @@ fn check(lab: &Lab, tree: &str, trials: usize) -> Met {
             assert_eq!(watched.state.pose, trial.state.pose);
             assert_eq!((watched.steps, watched.done), (trial.steps, trial.done));
             assert_same_events(&explanation, &recorder.events);
-            if trial.steps % 5 == 0 || explanation.lessons.len() > 1 {
+            if trial.steps % 5 == 0 || explanation.update_traces.len() > 1 {
                 let after = recorder.state(&watched.state);
                 assert_numbers(lab, &past, &explained, [&before, &after], &explanation);
             }
@@ -90,17 +90,17 @@ impl Met {
         self.steps += 1;
         for level in &explanation.levels {
             match level.rule {
-                Rule::Softmax => self.soft += 1,
-                Rule::EpsilonGreedy => self.greedy += 1,
-                Rule::OnlyChoice => self.only += 1,
-                Rule::Uniform => {}
+                SelectionRule::Softmax => self.soft += 1,
+                SelectionRule::EpsilonGreedy => self.greedy += 1,
+                SelectionRule::OnlyChoice => self.only += 1,
+                SelectionRule::Uniform => {}
             }
             self.standing += usize::from(!level.chose);
         }
-        for lesson in &explanation.lessons {
-            self.distant += usize::from(lesson.updates.len() > 1);
-            self.at_goal += usize::from(lesson.termination.is_some_and(|end| end.at_goal));
-            self.failed += usize::from(lesson.pseudo_reward < 0.0);
+        for update_trace in &explanation.update_traces {
+            self.distant += usize::from(update_trace.updates.len() > 1);
+            self.at_goal += usize::from(update_trace.termination.is_some_and(|end| end.at_goal));
+            self.failed += usize::from(update_trace.pseudo_reward < 0.0);
         }
         self.learned_actions += usize::from(explanation.action.learned.is_some());
     }
@@ -130,7 +130,7 @@ fn assert_same_events(explanation: &Explanation, events: &[Event]) {
     assert_eq!(Some(told), acted);
 
     let told: Vec<_> = explanation
-        .lessons
+        .update_traces
         .iter()
         .flat_map(|l| &l.updates)
         .collect();
@@ -140,10 +140,11 @@ fn assert_same_events(explanation: &Explanation, events: &[Event]) {
     });
     assert_eq!(told, seen.collect::<Vec<_>>());
 
-    let ended = explanation
-        .lessons
-        .iter()
-        .filter_map(|lesson| lesson.termination.map(|end| (lesson.node, end.at_goal)));
+    let ended = explanation.update_traces.iter().filter_map(|update_trace| {
+        update_trace
+            .termination
+            .map(|end| (update_trace.node, end.at_goal))
+    });
     let seen = events.iter().filter_map(|event| match event {
         Event::Terminated { node, at_goal } => Some((*node, *at_goal)),
         _ => None,
@@ -190,24 +191,27 @@ fn assert_numbers(
         changed(learned, [q(&old), q(&new)]);
     }
     let mut expected_end = after.state_type == DELIVERED;
-    for lesson in explanation.lessons.iter().rev() {
-        let (i, a) = (lesson.node, lesson.child);
+    for update_trace in explanation.update_traces.iter().rev() {
+        let (i, a) = (update_trace.node, update_trace.child);
         changed(
-            lesson.c_tilde,
+            update_trace.c_tilde,
             [&old, &new].map(|r| r.c_tilde(i, before, a)),
         );
-        changed(lesson.c, [&old, &new].map(|r| r.c(i, before, a)));
-        if let Some(end) = lesson.termination {
+        changed(update_trace.c, [&old, &new].map(|r| r.c(i, before, a)));
+        if let Some(end) = update_trace.termination {
             changed(end.temperature, [&old, &new].map(|r| r.tau[i]));
             // Delivery is everybody's goal, a lost target nobody's.
             expected_end &= end.at_goal;
-            assert_eq!(lesson.pseudo_reward, if end.at_goal { 0.0 } else { -1.0 });
+            assert_eq!(
+                update_trace.pseudo_reward,
+                if end.at_goal { 0.0 } else { -1.0 }
+            );
         }
     }
     assert!(after.state_type != DELIVERED || expected_end);
 }
 
-fn reference<'a>(lab: &'a Lab, parts: &'a (Hierarchy, Skills)) -> MaxqQ<'a> {
+fn reference<'a>(lab: &'a Lab, parts: &'a (Hierarchy, PrimitiveSet)) -> MaxqQ<'a> {
     let model = &lab.experiment.scenario.learning;
     let catalogue = lab.experiment.catalogue();
     MaxqQ::new(&parts.0, &parts.1, catalogue, model, Reading::BeforeTheLoop)

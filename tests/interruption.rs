@@ -118,7 +118,7 @@ fn killed_at_random_moments_and_resumed_is_never_killed() {
     let (expected, expected_kept) = (Record::of(&undisturbed), kept(&undisturbed));
 
     let seed = SystemTime::UNIX_EPOCH.elapsed().unwrap().as_nanos() as u64;
-    let mut rng = stream(seed, 0, 0, Purpose::Life);
+    let mut rng = stream(seed, 0, 0, Purpose::Trials);
     for kill in 0..KILLS {
         let folder = parent.path().join(format!("killed-{kill}"));
         // Spread over the whole life; every fourth in the first hundredth, the start-up.

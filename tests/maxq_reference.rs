@@ -52,12 +52,12 @@ const LIMITS: [u32; 16] = [
 /// Runs trials with these step limits, replays each, and compares what was learned:
 /// the largest difference in a parameter, and what was seen.
 fn compare(lab: &Lab, tree: &str, limits: &[u32], reading: Reading) -> (f64, Seen) {
-    let newborn = lab.newborn(tree);
+    let untrained = lab.untrained(tree);
     let model = &lab.experiment.scenario.learning;
     let catalogue = lab.experiment.catalogue();
-    let mut reference = MaxqQ::new(&newborn, &lab.skills, catalogue, model, reading);
-    let mut agent = lab.agent(newborn.clone());
-    let mut rng = stream(7, 0, 0, Purpose::Life);
+    let mut reference = MaxqQ::new(&untrained, &lab.primitives, catalogue, model, reading);
+    let mut agent = lab.agent(untrained.clone());
+    let mut rng = stream(7, 0, 0, Purpose::Trials);
     for &limit in limits {
         let mut recorder = lab.recorder();
         let start = lab.experiment.world.draw_start(&mut rng);
@@ -68,8 +68,8 @@ fn compare(lab: &Lab, tree: &str, limits: &[u32], reading: Reading) -> (f64, See
         }
         reference.replay(first, recorder.events, limit);
     }
-    let (hierarchy, skills) = agent.into_parts();
-    let agents = MaxqQ::new(&hierarchy, &skills, catalogue, model, reading);
+    let (hierarchy, primitives) = agent.into_parts();
+    let agents = MaxqQ::new(&hierarchy, &primitives, catalogue, model, reading);
     (largest_difference(&reference, &agents), reference.seen)
 }
 
@@ -257,10 +257,10 @@ fn choices_at(
     const DRAWS: u64 = 3000;
     let model = &lab.experiment.scenario.learning;
     let catalogue = lab.experiment.catalogue();
-    let (hierarchy, skills) = agent.clone().into_parts();
+    let (hierarchy, primitives) = agent.clone().into_parts();
     let reference = MaxqQ::new(
         &hierarchy,
-        &skills,
+        &primitives,
         catalogue,
         model,
         Reading::BeforeTheLoop,
@@ -269,7 +269,7 @@ fn choices_at(
     let mut nodes: BTreeMap<usize, BTreeMap<usize, u32>> = BTreeMap::new();
     for draw in 0..DRAWS {
         let (mut agent, mut trial, mut recorder) = (agent.clone(), trial.clone(), lab.recorder());
-        let mut rng = stream(draw, 0, 0, Purpose::Life);
+        let mut rng = stream(draw, 0, 0, Purpose::Trials);
         agent.advance(&mut trial, STEP_LIMIT, &mut rng, &mut recorder);
         for event in recorder.events {
             if let Event::Chose { node, child } = event {
@@ -298,8 +298,8 @@ fn choices_follow_the_values_at_the_temperature_of_the_node() {
     let lab = Lab::new("environment-1", &[]);
     let (mut soft, mut greedy) = (0, 0);
     for tree in [FLAT, COMPLETE, REPEATED] {
-        let mut rng = stream(3, 0, 0, Purpose::Life);
-        let mut agent = lab.agent(lab.newborn(tree));
+        let mut rng = stream(3, 0, 0, Purpose::Trials);
+        let mut agent = lab.agent(lab.untrained(tree));
         for _ in 0..6 {
             let start = lab.experiment.world.draw_start(&mut rng);
             let trial = agent.run_trial(&start, 1500, &mut rng, &Gate::default());

@@ -82,15 +82,15 @@ impl Question for Args {
             .into());
         }
         let workers = self.asked.workers()?;
-        let skills = experiment.train(self.asked.seed, 0, &workers, gate)?;
+        let primitives = experiment.train(self.asked.seed, 0, &workers, gate)?;
         let catalogue = experiment.catalogue();
-        let primitives = skills.all().iter().map(|skill| {
+        let primitives = primitives.all().iter().map(|primitive| {
             let rows = experiment
                 .world
-                .probes(skill.subtask)
+                .probes(primitive.subtask)
                 .into_iter()
                 .map(|probe| {
-                    let q = skill.action_values(&experiment.encoder, probe.percept.as_ref());
+                    let q = primitive.action_values(&experiment.encoder, probe.percept.as_ref());
                     Row {
                         label: probe.label,
                         input: probe.readings.into_iter().collect(),
@@ -98,7 +98,7 @@ impl Question for Args {
                         q,
                     }
                 });
-            let subtask = catalogue.subtask(skill.subtask);
+            let subtask = catalogue.subtask(primitive.subtask);
             Primitive {
                 subtask: subtask.name.clone(),
                 actions: match &subtask.kind {

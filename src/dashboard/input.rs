@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::keys::Key;
 use super::mouse::Mouse;
-use crate::evolution::State;
+use crate::evolution::EvolutionState;
 use crate::lab::Event;
 
 /// Something that happened.
@@ -28,7 +28,7 @@ pub enum Input {
         /// The generation.
         generation: u64,
         /// Its individuals with all that they have learned.
-        state: Result<Arc<State>, String>,
+        state: Result<Arc<EvolutionState>, String>,
     },
     /// Whoever drives the dashboard has something to say: an export was written, a file
     /// could not be read.

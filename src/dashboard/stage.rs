@@ -5,7 +5,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::evolution::State;
+use crate::evolution::EvolutionState;
 use crate::hierarchy::Tree;
 use crate::lab::specimen::{Bench, PolicyMap, Rollout, Specimen, Start, StepTrace};
 
@@ -57,7 +57,7 @@ struct Recorded {
 /// own: watching never touches evolution.
 pub struct Stage {
     bench: &'static dyn Bench,
-    population: Option<Arc<State>>,
+    population: Option<Arc<EvolutionState>>,
     /// The generation that was asked for last, and why it is not there.
     asked: Option<u64>,
     refused: Option<(u64, String)>,
@@ -97,7 +97,7 @@ impl Stage {
 
     /// The population on the stage, with everything that it has learned.
     #[must_use]
-    pub fn population(&self) -> Option<&Arc<State>> {
+    pub fn population(&self) -> Option<&Arc<EvolutionState>> {
         self.population.as_ref()
     }
 
@@ -249,7 +249,7 @@ impl Stage {
     }
 
     /// Takes in a population, or why there is none.
-    pub(super) fn receive(&mut self, generation: u64, state: Result<Arc<State>, String>) {
+    pub(super) fn receive(&mut self, generation: u64, state: Result<Arc<EvolutionState>, String>) {
         if self.asked == Some(generation) {
             self.asked = None;
         }

@@ -5,9 +5,8 @@ use rand::RngExt;
 use super::crossover::crossover;
 use super::individual::{Individual, Origin};
 use super::mutation::mutated;
-use super::newborn::newborn;
 use crate::hierarchy::random_tree;
-use crate::learning::{Gate, Stopped};
+use crate::learning::{Gate, Hierarchy, Stopped};
 use crate::random::Stream;
 use crate::scenario::{Inheritance, Scenario, Variation};
 use crate::worlds::Catalogue;
@@ -86,8 +85,8 @@ pub(super) fn random_individuals(
         Individual {
             id,
             origin: Origin::Random,
-            hierarchy: newborn(tree, &scenario.learning, catalogue),
-            skills: None,
+            hierarchy: Hierarchy::new(tree, catalogue, &scenario.learning),
+            primitives: None,
         }
     };
     (0..count).map(draw).collect()
@@ -114,11 +113,11 @@ fn tournament(candidates: &[usize], size: usize, rng: &mut Stream) -> usize {
 /// A new individual with the structure of another, and what that has learned, unless
 /// inheritance is Darwinian.
 fn copy(from: &Individual, id: u64, scenario: &Scenario, catalogue: &Catalogue) -> Individual {
-    let (hierarchy, skills) = match scenario.evolution.inheritance {
-        Inheritance::Lamarckian => (from.hierarchy.clone(), from.skills.clone()),
+    let (hierarchy, primitives) = match scenario.evolution.inheritance {
+        Inheritance::Lamarckian => (from.hierarchy.clone(), from.primitives.clone()),
         Inheritance::Darwinian => {
             let tree = from.hierarchy.tree().clone();
-            (newborn(tree, &scenario.learning, catalogue), None)
+            (Hierarchy::new(tree, catalogue, &scenario.learning), None)
         }
     };
     Individual {
@@ -128,6 +127,6 @@ fn copy(from: &Individual, id: u64, scenario: &Scenario, catalogue: &Catalogue) 
             mutations: Vec::new(),
         },
         hierarchy,
-        skills,
+        primitives,
     }
 }

@@ -3,9 +3,8 @@
 use rand::RngExt;
 
 use super::individual::{Individual, Inherited, Origin, Parent};
-use super::newborn::anew;
 use crate::hierarchy::check;
-use crate::learning::Hierarchy;
+use crate::learning::{CompositeValues, Hierarchy};
 use crate::random::Stream;
 use crate::scenario::{Inheritance, Scenario};
 use crate::worlds::Catalogue;
@@ -74,7 +73,7 @@ fn offspring(
         let name = subtask.name(catalogue).to_owned();
         if darwinian || path.contains(&node) {
             let children: Vec<_> = tree.children(node).map(|c| tree.subtask(c)).collect();
-            *value = anew(&scenario.learning, subtask, &children, catalogue);
+            *value = CompositeValues::new(subtask, &children, catalogue, &scenario.learning);
             reset.push(name);
         } else {
             let from = if graft.contains(&node) {
@@ -99,7 +98,7 @@ fn offspring(
             .to_owned(),
     };
     let hierarchy = Hierarchy::from_parts(tree, values);
-    let skills = receiver.skills.clone().filter(|_| !darwinian);
+    let primitives = receiver.primitives.clone().filter(|_| !darwinian);
     Individual {
         id,
         origin: Origin::Crossover {
@@ -110,6 +109,6 @@ fn offspring(
             mutations: Vec::new(),
         },
         hierarchy: hierarchy.unwrap_or_else(|| unreachable!("values were spliced as the tree was")),
-        skills,
+        primitives,
     }
 }

@@ -9,11 +9,13 @@ use rand::RngExt;
 use super::breeding::{breed, random_individuals};
 use super::experiment::Experiment;
 use super::individual::{Individual, Origin};
-use super::life::{Generation, Life, Living, Starts, is_experienced};
 use super::parallel::Workers;
 use super::record::{GenerationRecord, RankedRecord};
+use super::trials::{Generation, IndividualTrials, TrialResults, TrialStarts, is_experienced};
 use crate::hierarchy::{Summary, canonical, structural_difference};
-use crate::learning::{Gate, PolicySamples, SelectionProbabilities, Skills, Stopped, average};
+use crate::learning::{
+    Gate, PolicySamples, PrimitiveSet, SelectionProbabilities, Stopped, average,
+};
 use crate::random::{Purpose, stream};
 use crate::scenario::{PrimitiveLearning, Selection, Variation};
 use crate::worlds::World;
@@ -21,13 +23,13 @@ use crate::worlds::World;
 /// All that an evolution has come to: with the scenario and the seed, everything
 /// needed to go on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct State {
+pub struct EvolutionState {
     /// Generations lived through; 0 before the initial population has lived.
     pub generation: u64,
     /// After a generation from best to worst; before the first in the scenario's order.
     pub individuals: Vec<Individual>,
     /// The one copy of the primitive subtasks.
-    pub skills: Skills,
+    pub primitives: PrimitiveSet,
     /// Id of the next new individual.
     pub next_id: u64,
     /// Control steps so far, training of the primitive subtasks included.
@@ -36,7 +38,7 @@ pub struct State {
     pub converged: bool,
 }
 
-impl State {
+impl EvolutionState {
     /// Whether evolution is over: converged, or at the generation limit.
     #[must_use]
     pub fn is_over(&self, generation_limit: u64) -> bool {
@@ -51,7 +53,7 @@ pub struct Evolution<'e, W: World> {
     workers: &'e Workers,
     seed: u64,
     samples: PolicySamples<W::Percept>,
-    state: Arc<State>,
+    state: Arc<EvolutionState>,
 }
 
 impl<'e, W: World> Evolution<'e, W> {
@@ -65,15 +67,15 @@ impl<'e, W: World> Evolution<'e, W> {
         seed: u64,
         gate: &Gate,
     ) -> Result<Self, Stopped> {
-        let skills = experiment.train(seed, 0, workers, gate)?;
+        let primitives = experiment.train(seed, 0, workers, gate)?;
         let individuals = first_population(experiment, seed);
-        let primitives = experiment.catalogue().primitives();
-        let state = State {
+        let trained = experiment.catalogue().primitives();
+        let state = EvolutionState {
             generation: 0,
             next_id: individuals.len() as u64,
             individuals,
-            skills,
-            control_steps: primitives
+            primitives,
+            control_steps: trained
                 .filter_map(|primitive| experiment.world.training(primitive))
                 .map(|training| u64::from(training.steps))
                 .sum(),
@@ -90,7 +92,7 @@ impl<'e, W: World> Evolution<'e, W> {
         experiment: &'e Experiment<W>,
         workers: &'e Workers,
         seed: u64,
-        state: State,
+        state: EvolutionState,
         gate: &Gate,
     ) -> Result<Self, Stopped> {
         let mut rng = stream(seed, 0, 0, Purpose::PolicySamples);
@@ -106,7 +108,7 @@ impl<'e, W: World> Evolution<'e, W> {
 
     /// What the evolution has come to; a snapshot costs nothing.
     #[must_use]
-    pub fn state(&self) -> &Arc<State> {
+    pub fn state(&self) -> &Arc<EvolutionState> {
         &self.state
     }
 
@@ -123,7 +125,7 @@ impl<'e, W: World> Evolution<'e, W> {
     }
 
     /// One turn of the loop: lines 8 and 9 but before the first generation, then lines
-    /// 3 to 5. `progress` is told how many lives have been lived: as many as all trials
+    /// 3 to 5. `progress` is told how many results have been lived: as many as all trials
     /// so far make up, for all individuals come to their ends together.
     ///
     /// # Errors
@@ -150,29 +152,29 @@ impl<'e, W: World> Evolution<'e, W> {
                 gate,
             )?
         };
-        let (lives, skills) = self.live_all(&population, generation, gate, progress)?;
-        let ranks = self.ranks(&lives, generation);
-        let lived_steps: u64 = lives.iter().map(|life| life.control_steps).sum();
-        let mut pairs: Vec<_> = population.into_iter().zip(lives).map(Some).collect();
+        let (results, primitives) = self.run_trials(&population, generation, gate, progress)?;
+        let ranks = self.ranks(&results, generation);
+        let lived_steps: u64 = results.iter().map(|results| results.control_steps).sum();
+        let mut pairs: Vec<_> = population.into_iter().zip(results).map(Some).collect();
         let ranked: Vec<_> = ranks
             .iter()
             .filter_map(|&index| pairs[index].take())
             .collect();
         let control_steps = self.state.control_steps + lived_steps;
         let own = experiment.scenario.learning.primitive_learning == PrimitiveLearning::Individual;
-        let record = self.record(generation, &ranked, &skills, control_steps, gate)?;
-        self.state = Arc::new(State {
+        let record = self.record(generation, &ranked, &primitives, control_steps, gate)?;
+        self.state = Arc::new(EvolutionState {
             generation,
             individuals: ranked
                 .into_iter()
-                .map(|(individual, life)| Individual {
-                    hierarchy: life.hierarchy,
-                    skills: own.then_some(life.skills),
+                .map(|(individual, results)| Individual {
+                    hierarchy: results.hierarchy,
+                    primitives: own.then_some(results.primitives),
                     id: individual.id,
                     origin: individual.origin,
                 })
                 .collect(),
-            skills,
+            primitives,
             next_id,
             control_steps,
             converged: record.converged,
@@ -181,16 +183,16 @@ impl<'e, W: World> Evolution<'e, W> {
     }
 
     /// Line 3: all individuals live through the generation.
-    fn live_all(
+    fn run_trials(
         &self,
         population: &[Individual],
         generation: u64,
         gate: &Gate,
         progress: impl Fn(usize) + Sync,
-    ) -> Result<(Vec<Life>, Skills), Stopped> {
-        let starts = Starts::draw(self.experiment, self.seed, generation);
+    ) -> Result<(Vec<TrialResults>, PrimitiveSet), Stopped> {
+        let starts = TrialStarts::draw(self.experiment, self.seed, generation);
         let trials = self.experiment.scenario.evolution.trials_per_generation;
-        // Half of the life of an experienced individual is over already.
+        // Half of the results of an experienced individual is over already.
         let experienced = population.iter().filter(|one| is_experienced(one)).count();
         let trials_over = AtomicUsize::new(experienced * trials / 2);
         let trial_over = || {
@@ -208,30 +210,36 @@ impl<'e, W: World> Evolution<'e, W> {
             trial_over: &trial_over,
         };
         if self.experiment.scenario.learning.primitive_learning == PrimitiveLearning::Shared {
-            let mut skills = self.state.skills.clone();
-            let mut lives = Vec::with_capacity(population.len());
+            let mut primitives = self.state.primitives.clone();
+            let mut all = Vec::with_capacity(population.len());
             for individual in population {
-                let life = Living::new(generation, individual, &skills).run()?;
-                skills = life.skills.clone();
-                lives.push(life);
+                let results = IndividualTrials::new(generation, individual, &primitives).run()?;
+                primitives = results.primitives.clone();
+                all.push(results);
             }
-            return Ok((lives, skills));
+            return Ok((all, primitives));
         }
         let born = population.iter().map(|individual| {
-            let skills = individual.skills.as_ref().unwrap_or(&self.state.skills);
-            Living::new(generation, individual, skills)
+            let primitives = individual
+                .primitives
+                .as_ref()
+                .unwrap_or(&self.state.primitives);
+            IndividualTrials::new(generation, individual, primitives)
         });
         let lived = self.workers.finish(born.collect())?;
-        let lives = lived.into_iter().map(Living::into_life).collect();
-        Ok((lives, self.state.skills.clone()))
+        let results = lived
+            .into_iter()
+            .map(IndividualTrials::into_results)
+            .collect();
+        Ok((results, self.state.primitives.clone()))
     }
 
     /// Line 4: indices from best to worst; of equals, the one is better that stands first
     /// in the population: the reproduced as they were ranked, then by id.
-    fn ranks(&self, lives: &[Life], generation: u64) -> Vec<usize> {
-        let mut order: Vec<_> = (0..lives.len()).collect();
+    fn ranks(&self, results: &[TrialResults], generation: u64) -> Vec<usize> {
+        let mut order: Vec<_> = (0..results.len()).collect();
         match self.experiment.scenario.evolution.selection {
-            Selection::Fitness => order.sort_by_key(|&index| lives[index].fitness()),
+            Selection::Fitness => order.sort_by_key(|&index| results[index].fitness()),
             Selection::Random => {
                 let mut rng = stream(self.seed, generation, 0, Purpose::RandomRank);
                 let chances: Vec<u64> = order.iter().map(|_| rng.random()).collect();
@@ -244,8 +252,8 @@ impl<'e, W: World> Evolution<'e, W> {
     fn record(
         &self,
         generation: u64,
-        ranked: &[(Individual, Life)],
-        skills: &Skills,
+        ranked: &[(Individual, TrialResults)],
+        primitives: &PrimitiveSet,
         control_steps: u64,
         gate: &Gate,
     ) -> Result<GenerationRecord, Stopped> {
@@ -255,8 +263,8 @@ impl<'e, W: World> Evolution<'e, W> {
         let individuals: Vec<_> = ranked
             .iter()
             .enumerate()
-            .map(|(index, (individual, life))| {
-                let tree = life.hierarchy.tree();
+            .map(|(index, (individual, results))| {
+                let tree = results.hierarchy.tree();
                 let summary = Summary::of(tree, catalogue);
                 RankedRecord {
                     rank: index + 1,
@@ -266,20 +274,21 @@ impl<'e, W: World> Evolution<'e, W> {
                     composites: summary.composites,
                     primitives: summary.primitives,
                     primitives_by_state_type: summary.primitives_by_state_type,
-                    fitness_steps: life.fitness(),
-                    trials: life.scored.clone(),
+                    fitness_steps: results.fitness(),
+                    trials: results.scored.clone(),
                     difference_to_best: structural_difference(tree, best, catalogue),
                 }
             })
             .collect();
         let others = &individuals[1..better.len()];
         let difference: i64 = others.iter().map(|other| other.difference_to_best).sum();
-        let structure = |(_, life): &(_, Life)| canonical(life.hierarchy.tree(), catalogue);
+        let structure =
+            |(_, results): &(_, TrialResults)| canonical(results.hierarchy.tree(), catalogue);
         let first = structure(&ranked[0]);
         Ok(GenerationRecord {
             generation,
             mean_difference: difference as f64 / others.len().max(1) as f64,
-            selection_probabilities: self.named(self.probabilities(better, skills, gate)?),
+            selection_probabilities: self.named(self.probabilities(better, primitives, gate)?),
             converged: self.may_converge() && better.iter().all(|other| structure(other) == first),
             control_steps,
             individuals,
@@ -288,8 +297,8 @@ impl<'e, W: World> Evolution<'e, W> {
 
     fn probabilities(
         &self,
-        better: &[(Individual, Life)],
-        skills: &Skills,
+        better: &[(Individual, TrialResults)],
+        primitives: &PrimitiveSet,
         gate: &Gate,
     ) -> Result<SelectionProbabilities, Stopped> {
         let Experiment {
@@ -299,14 +308,20 @@ impl<'e, W: World> Evolution<'e, W> {
             ..
         } = self.experiment;
         let all = self.workers.map((0..better.len()).collect(), |index| {
-            let life = &better[index].1;
+            let results = &better[index].1;
             let learning = &scenario.learning;
-            let skills = match learning.primitive_learning {
-                PrimitiveLearning::Individual => &life.skills,
-                PrimitiveLearning::Frozen | PrimitiveLearning::Shared => skills,
+            let primitives = match learning.primitive_learning {
+                PrimitiveLearning::Individual => &results.primitives,
+                PrimitiveLearning::Frozen | PrimitiveLearning::Shared => primitives,
             };
-            self.samples
-                .probabilities(world, encoder, learning, &life.hierarchy, skills, gate)
+            self.samples.probabilities(
+                world,
+                encoder,
+                learning,
+                &results.hierarchy,
+                primitives,
+                gate,
+            )
         })?;
         Ok(average(&all))
     }
@@ -343,8 +358,8 @@ fn first_population<W: World>(experiment: &Experiment<W>, seed: u64) -> Vec<Indi
     let individuals = trees.map(|(tree, id)| Individual {
         id,
         origin: Origin::HandCoded,
-        hierarchy: experiment.newborn(tree.clone()),
-        skills: None,
+        hierarchy: experiment.untrained(tree.clone()),
+        primitives: None,
     });
     individuals.collect()
 }

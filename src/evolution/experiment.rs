@@ -3,16 +3,16 @@
 use thiserror::Error;
 
 use super::parallel::Workers;
-use super::turns::Task;
+use super::turns::PooledTask;
 use crate::hierarchy::{self, TextError, Tree, TypingError};
-use crate::learning::{Agent, Encoder, Gate, Hierarchy, Skills, Stopped, Trainee};
+use crate::learning::{Agent, Encoder, Gate, Hierarchy, PrimitiveSet, PrimitiveTrainer, Stopped};
 use crate::random::{Purpose, stream};
 use crate::scenario::Scenario;
 use crate::worlds::{Catalogue, World};
 
 /// Control steps of one turn of a primitive subtask's training: short beside the training,
 /// long beside the exchange of tasks.
-const LESSON_STEPS: u32 = 1000;
+const TRAINING_TURN_STEPS: u32 = 1000;
 
 /// A scenario with its world, its feature maps and its first hierarchies.
 #[derive(Clone, Debug)]
@@ -76,13 +76,13 @@ impl<W: World> Experiment<W> {
 
     /// A hierarchy of this shape that has learned nothing.
     #[must_use]
-    pub fn newborn(&self, tree: Tree) -> Hierarchy {
-        super::newborn::newborn(tree, &self.scenario.learning, self.catalogue())
+    pub fn untrained(&self, tree: Tree) -> Hierarchy {
+        Hierarchy::new(tree, self.catalogue(), &self.scenario.learning)
     }
 
     /// An agent with a hierarchy and the primitive subtasks, ready for the scenario's trials.
     #[must_use]
-    pub fn agent(&self, hierarchy: Hierarchy, skills: Skills) -> Agent<'_, W> {
+    pub fn agent(&self, hierarchy: Hierarchy, primitives: PrimitiveSet) -> Agent<'_, W> {
         let learning = &self.scenario.learning;
         let limit = self.scenario.evolution.trial_step_limit;
         Agent::new(
@@ -90,53 +90,60 @@ impl<W: World> Experiment<W> {
             &self.encoder,
             learning,
             hierarchy,
-            skills,
+            primitives,
             limit,
         )
     }
 
-    /// Trains the primitive subtasks; `bank` numbers independent trainings.
+    /// Trains the primitive subtasks; `primitive_set` numbers independent trainings.
     ///
     /// # Errors
     /// When the gate is stopped.
     pub fn train(
         &self,
         seed: u64,
-        bank: u64,
+        primitive_set: u64,
         workers: &Workers,
         gate: &Gate,
-    ) -> Result<Skills, Stopped> {
-        let lessons = self.catalogue().primitives().enumerate();
-        let lessons = lessons.map(|(index, primitive)| {
-            let rng = stream(seed, bank, index as u64, Purpose::PrimitiveTraining);
+    ) -> Result<PrimitiveSet, Stopped> {
+        let tasks = self.catalogue().primitives().enumerate();
+        let tasks = tasks.map(|(index, primitive)| {
+            let rng = stream(
+                seed,
+                primitive_set,
+                index as u64,
+                Purpose::PrimitiveTraining,
+            );
             let learning = &self.scenario.learning;
-            let trainee = Trainee::new(&self.world, &self.encoder, learning, primitive, rng);
-            Lesson { trainee, gate }
+            let trainer =
+                PrimitiveTrainer::new(&self.world, &self.encoder, learning, primitive, rng);
+            TrainingTask { trainer, gate }
         });
-        let trained = workers.finish(lessons.collect())?.into_iter();
-        let skills = trained.map(|lesson| lesson.trainee.into_skill()).collect();
-        let skills = Skills::new(skills, self.catalogue());
-        Ok(skills.unwrap_or_else(|| unreachable!("one skill was trained for each primitive")))
+        let trained = workers.finish(tasks.collect())?.into_iter();
+        let primitives = trained.map(|task| task.trainer.into_values()).collect();
+        let primitives = PrimitiveSet::new(primitives, self.catalogue());
+        Ok(primitives
+            .unwrap_or_else(|| unreachable!("one primitive was trained for each primitive")))
     }
 }
 
 /// A primitive subtask that is trained in turns.
-struct Lesson<'t, W: World> {
-    trainee: Trainee<'t, W>,
+struct TrainingTask<'t, W: World> {
+    trainer: PrimitiveTrainer<'t, W>,
     gate: &'t Gate,
 }
 
-impl<W: World> Task for Lesson<'_, W> {
+impl<W: World> PooledTask for TrainingTask<'_, W> {
     type Error = Stopped;
 
     /// Control steps.
     fn left(&self) -> Option<f64> {
-        let left = self.trainee.left();
+        let left = self.trainer.left();
         (left > 0).then_some(f64::from(left))
     }
 
     fn turn(&mut self) -> Result<(), Stopped> {
-        self.trainee.train(LESSON_STEPS, self.gate)
+        self.trainer.train(TRAINING_TURN_STEPS, self.gate)
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::learning::{Hierarchy, Skills};
+use crate::learning::{Hierarchy, PrimitiveSet};
 
 /// A member of the population.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Individual {
     pub hierarchy: Hierarchy,
     /// Its own primitive subtasks; `None` where it begins with, or stays with, the copy
     /// of the population.
-    pub skills: Option<Skills>,
+    pub primitives: Option<PrimitiveSet>,
 }
 
 /// How an individual came into its generation.

@@ -5,15 +5,14 @@ mod crossover;
 mod evolve;
 mod experiment;
 mod individual;
-mod life;
 mod mutation;
-mod newborn;
 mod parallel;
 mod record;
+mod trials;
 mod turns;
 
 pub use crossover::crossover;
-pub use evolve::{Evolution, State};
+pub use evolve::{Evolution, EvolutionState};
 pub use experiment::{Experiment, ExperimentError, TreeError, read_tree};
 pub use individual::{Individual, Inherited, Mutation, Origin, Parent};
 pub use mutation::mutated;

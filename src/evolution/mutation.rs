@@ -7,7 +7,6 @@
 use rand::RngExt;
 
 use super::individual::{Individual, Mutation, Origin};
-use super::newborn::{anew, newborn};
 use crate::hierarchy::{Tree, check, random_subtree, to_text};
 use crate::learning::{CompositeValues, Hierarchy};
 use crate::random::Stream;
@@ -121,12 +120,17 @@ fn grown(
         .chain(tree.ancestors(parent))
         .collect();
     let mut values = individual.hierarchy.values().to_vec();
-    let (_, new) = newborn(subtree, &scenario.learning, catalogue).into_parts();
+    let (_, new) = Hierarchy::new(subtree, catalogue, &scenario.learning).into_parts();
     values.splice(end..end, new);
     for &node in &path {
         let children = children(&more, node);
         let subtask = more.subtask(node);
-        values[node] = Some(anew(&scenario.learning, subtask, &children, catalogue));
+        values[node] = Some(CompositeValues::new(
+            subtask,
+            &children,
+            catalogue,
+            &scenario.learning,
+        ));
     }
     let hierarchy = Hierarchy::from_parts(more, values)
         .unwrap_or_else(|| unreachable!("values were added as the nodes were"));

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
-use super::turns::{Desk, Task};
+use super::turns::{PooledTask, TaskPool};
 
 /// Threads for the pieces of a run's work.
 ///
@@ -43,23 +43,23 @@ impl Workers {
     ///
     /// # Errors
     /// With the error of a turn, if one fails; the other tasks are given up.
-    pub(crate) fn finish<T: Task>(&self, tasks: Vec<T>) -> Result<Vec<T>, T::Error> {
-        let desk = Mutex::new(Desk::new(tasks));
-        let at_desk = || desk.lock().unwrap_or_else(PoisonError::into_inner);
+    pub(crate) fn finish<T: PooledTask>(&self, tasks: Vec<T>) -> Result<Vec<T>, T::Error> {
+        let pool = Mutex::new(TaskPool::new(tasks));
+        let lock = || pool.lock().unwrap_or_else(PoisonError::into_inner);
         let alone = self.threads() == 1;
         self.pool.broadcast(|_| {
-            let mut held = at_desk().take();
+            let mut held = lock().take();
             while let Some(mut numbered) = held {
                 let turn = numbered.task.turn();
                 let kept = alone && turn.is_ok() && numbered.task.left().is_some();
                 held = match kept {
                     true => Some(numbered),
-                    false => at_desk().exchange(numbered, turn),
+                    false => lock().exchange(numbered, turn),
                 };
             }
         });
-        let desk = desk.into_inner().unwrap_or_else(PoisonError::into_inner);
-        desk.into_finished()
+        let pool = pool.into_inner().unwrap_or_else(PoisonError::into_inner);
+        pool.into_finished()
     }
 
     /// Does every piece of `order`, started in that order, and returns the results

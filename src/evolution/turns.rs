@@ -1,7 +1,7 @@
 //! Tasks that are done in turns, so that threads come to the end together.
 
 /// Work that is done in turns.
-pub(crate) trait Task: Send {
+pub(crate) trait PooledTask: Send {
     /// Why a turn can fail.
     type Error: Send;
 
@@ -20,24 +20,24 @@ pub(super) struct Numbered<T> {
 }
 
 /// Where threads leave a task after a turn and take the next.
-pub(super) struct Desk<T: Task> {
+pub(super) struct TaskPool<T: PooledTask> {
     waiting: Vec<Numbered<T>>,
     finished: Vec<Numbered<T>>,
     failed: Option<T::Error>,
 }
 
-impl<T: Task> Desk<T> {
+impl<T: PooledTask> TaskPool<T> {
     pub(super) fn new(tasks: Vec<T>) -> Self {
         let numbered = tasks.into_iter().enumerate();
-        let mut desk = Self {
+        let mut pool = Self {
             waiting: Vec::new(),
             finished: Vec::new(),
             failed: None,
         };
         for (number, task) in numbered {
-            desk.put(Numbered { number, task });
+            pool.put(Numbered { number, task });
         }
-        desk
+        pool
     }
 
     /// The task with most left. A thread that finds none may go: the tasks that are not
@@ -100,7 +100,7 @@ mod tests {
         fails_at: Option<u32>,
     }
 
-    impl Task for Countdown {
+    impl PooledTask for Countdown {
         type Error = u32;
 
         fn left(&self) -> Option<f64> {
@@ -152,11 +152,11 @@ mod tests {
 
     #[test]
     fn the_task_with_most_left_is_next() {
-        let mut desk = Desk::new(vec![countdown(3), countdown(9), countdown(5)]);
-        let mut longest = desk.take().unwrap();
+        let mut pool = TaskPool::new(vec![countdown(3), countdown(9), countdown(5)]);
+        let mut longest = pool.take().unwrap();
         assert_eq!(longest.task.left, 9);
         longest.task.left = 4;
-        let next = desk.exchange(longest, Ok(())).unwrap();
+        let next = pool.exchange(longest, Ok(())).unwrap();
         assert_eq!(next.task.left, 5);
     }
 
@@ -166,7 +166,7 @@ mod tests {
         over: usize,
     }
 
-    impl Task for Trials {
+    impl PooledTask for Trials {
         type Error = ();
 
         fn left(&self) -> Option<f64> {
@@ -185,7 +185,7 @@ mod tests {
     /// Threads on a clock of their own: what this machine does otherwise plays no part.
     #[test]
     fn two_threads_come_to_the_end_together() {
-        let mut rng = stream(1, 0, 0, Purpose::Life);
+        let mut rng = stream(1, 0, 0, Purpose::Trials);
         let (mut work, mut wall) = (0.0, 0.0);
         for _ in 0..30 {
             // Lives that differ threefold, of trials that differ as chance will have it.
@@ -201,11 +201,11 @@ mod tests {
                 })
                 .collect();
             work += lives.iter().flat_map(|life| &life.lengths).sum::<f64>();
-            let mut desk = Desk::new(lives);
-            let mut threads = [0.0, 0.0].map(|clock| (clock, desk.take()));
+            let mut pool = TaskPool::new(lives);
+            let mut threads = [0.0, 0.0].map(|clock| (clock, pool.take()));
             while threads.iter().any(|(_, held)| held.is_some()) {
                 let busy = threads.iter_mut().filter(|(_, held)| held.is_some());
-                // The thread whose turn is over first comes to the desk first.
+                // The thread whose turn is over first comes to the pool first.
                 let turn = |held: &Option<Numbered<Trials>>| {
                     let task = &held.as_ref().unwrap().task;
                     task.lengths[task.over]
@@ -218,7 +218,7 @@ mod tests {
                 *clock += turn(held);
                 let mut back = held.take().unwrap();
                 back.task.turn().unwrap();
-                *held = desk.exchange(back, Ok(()));
+                *held = pool.exchange(back, Ok(()));
             }
             wall += f64::max(threads[0].0, threads[1].0);
         }

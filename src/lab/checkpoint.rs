@@ -13,10 +13,10 @@ use serde_json::ser::{CompactFormatter, Formatter};
 use serde_json::value::RawValue;
 
 use super::checkpoint_error::{CHECKPOINT_FORMAT, CheckpointError};
-use super::population_file::{IndividualFile, PrimitiveFile, skills};
-use crate::evolution::{Experiment, State};
+use super::population_file::{IndividualFile, PrimitiveFile, primitives};
+use crate::evolution::{EvolutionState, Experiment};
 use crate::files::{parse_json, read_text};
-use crate::learning::{Skill, Skills};
+use crate::learning::{PrimitiveSet, PrimitiveValues};
 use crate::scenario::Scenario;
 use crate::worlds::World;
 
@@ -104,7 +104,7 @@ impl Checkpoint {
     pub fn of<W: World>(
         experiment: &Experiment<W>,
         seed: u64,
-        state: &State,
+        state: &EvolutionState,
         events: LogPosition,
     ) -> Result<Self, CheckpointError> {
         check_finite(state)?;
@@ -119,10 +119,10 @@ impl Checkpoint {
             next_id: state.next_id,
             events,
             primitives: state
-                .skills
+                .primitives
                 .all()
                 .iter()
-                .map(|skill| PrimitiveFile::of(skill, catalogue))
+                .map(|primitive| PrimitiveFile::of(primitive, catalogue))
                 .collect(),
             individuals: individuals
                 .map(|individual| IndividualFile::of(individual, catalogue))
@@ -212,7 +212,10 @@ impl Checkpoint {
     ///
     /// # Errors
     /// When hierarchies or learned values do not fit the scenario.
-    pub fn state<W: World>(&self, experiment: &Experiment<W>) -> Result<State, CheckpointError> {
+    pub fn state<W: World>(
+        &self,
+        experiment: &Experiment<W>,
+    ) -> Result<EvolutionState, CheckpointError> {
         let catalogue = experiment.catalogue();
         let evolution = &experiment.scenario.evolution;
         if self.individuals.len() != evolution.population_size {
@@ -230,10 +233,10 @@ impl Checkpoint {
             let place = format!("state.individuals[{index}]");
             file.individual(&place, catalogue, &experiment.scenario)
         });
-        Ok(State {
+        Ok(EvolutionState {
             generation: self.generation,
             individuals: individuals.collect::<Result<_, _>>()?,
-            skills: skills(&self.primitives, "state.primitives", catalogue)?,
+            primitives: primitives(&self.primitives, "state.primitives", catalogue)?,
             next_id: self.next_id,
             control_steps: self.control_steps,
             converged: self.converged,
@@ -260,14 +263,15 @@ impl Checkpoint {
 ///
 /// # Errors
 /// When a learned value is not finite.
-pub(super) fn check_finite(state: &State) -> Result<(), CheckpointError> {
+pub(super) fn check_finite(state: &EvolutionState) -> Result<(), CheckpointError> {
     let diverged = |place| Err(CheckpointError::Diverged { place });
-    let finite = |skills: &Skills| skills.all().iter().all(Skill::is_finite);
-    if !finite(&state.skills) {
+    let finite =
+        |primitives: &PrimitiveSet| primitives.all().iter().all(PrimitiveValues::is_finite);
+    if !finite(&state.primitives) {
         return diverged(String::from("the primitive subtasks"));
     }
     let found = state.individuals.iter().find(|individual| {
-        !individual.hierarchy.is_finite() || !individual.skills.as_ref().is_none_or(finite)
+        !individual.hierarchy.is_finite() || !individual.primitives.as_ref().is_none_or(finite)
     });
     match found {
         Some(individual) => diverged(format!("individual {}", individual.id)),

@@ -7,7 +7,7 @@ use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use serde::{Deserialize, Serialize};
 
 use super::event::Event;
-use crate::evolution::State;
+use crate::evolution::EvolutionState;
 use crate::learning::Gate;
 
 /// Events that wait for the reader before progress is coalesced.
@@ -42,7 +42,7 @@ struct Desk {
     activity: Mutex<Activity>,
     sink: Sink,
     requests: (Sender<()>, Receiver<()>),
-    latest: Mutex<Option<Arc<State>>>,
+    latest: Mutex<Option<Arc<EvolutionState>>>,
 }
 
 impl Controls {
@@ -101,15 +101,15 @@ impl Controls {
 
     /// The latest state of the evolution; `None` while primitive subtasks are trained.
     #[must_use]
-    pub fn latest(&self) -> Option<Arc<State>> {
+    pub fn latest(&self) -> Option<Arc<EvolutionState>> {
         self.lock_latest().clone()
     }
 
-    pub(super) fn set_latest(&self, state: &Arc<State>) {
+    pub(super) fn set_latest(&self, state: &Arc<EvolutionState>) {
         *self.lock_latest() = Some(Arc::clone(state));
     }
 
-    fn lock_latest(&self) -> MutexGuard<'_, Option<Arc<State>>> {
+    fn lock_latest(&self) -> MutexGuard<'_, Option<Arc<EvolutionState>>> {
         let latest = &self.desk.latest;
         latest.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::evolution::{Experiment, Workers};
 use crate::hierarchy::{Tree, to_text};
-use crate::learning::{Gate, Skills, Stopped};
+use crate::learning::{Gate, PrimitiveSet, Stopped};
 use crate::random::{Purpose, stream};
 use crate::worlds::World;
 
@@ -132,13 +132,13 @@ fn one_repeat<W: World>(
     tree: &Tree,
     protocol: &Protocol,
     repeat: usize,
-    skills: &Skills,
+    primitives: &PrimitiveSet,
     gate: &Gate,
 ) -> Result<Life, Stopped> {
     let limit = experiment.scenario.evolution.trial_step_limit;
     let mut rng = stream(protocol.seed, 0, repeat as u64, Purpose::Evaluation);
-    let newborn = experiment.newborn(tree.clone());
-    let mut agent = experiment.agent(newborn, skills.clone());
+    let untrained = experiment.untrained(tree.clone());
+    let mut agent = experiment.agent(untrained, primitives.clone());
     let mut life = Life {
         repeat: Repeat {
             steps: Vec::with_capacity(protocol.trials),

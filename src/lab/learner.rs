@@ -3,7 +3,9 @@
 
 use super::algorithm::Algorithm;
 use crate::evolution::Experiment;
-use crate::learning::{Agent, Episode, Flat, FlatLesson, Gate, Policy, Skills, Stopped};
+use crate::learning::{
+    Agent, Episode, FlatLearner, FlatMethod, Gate, Policy, PrimitiveSet, Stopped,
+};
 use crate::random::Stream;
 use crate::worlds::World;
 use crate::worlds::mdp::{Mdp, MdpState, PolicyTable};
@@ -20,7 +22,7 @@ pub(super) trait Learner<P> {
 
 /// A learner of any kind.
 pub(super) enum AnyLearner<'e, W: World> {
-    Flat(Box<Flat<'e, W>>),
+    Flat(Box<FlatLearner<'e, W>>),
     Hierarchy(Box<Pupil<'e, W>>),
 }
 
@@ -41,8 +43,8 @@ impl<'e, W: World> AnyLearner<'e, W> {
     ) -> Self {
         if let Algorithm::MaxqQ(tree) = algorithm {
             let learning = &experiment.scenario.learning;
-            let skills = Skills::untrained(experiment.catalogue(), learning);
-            let agent = experiment.agent(experiment.newborn(tree.clone()), skills);
+            let primitives = PrimitiveSet::untrained(experiment.catalogue(), learning);
+            let agent = experiment.agent(experiment.untrained(tree.clone()), primitives);
             return Self::Hierarchy(Box::new(Pupil {
                 policy: agent.policy(),
                 agent,
@@ -53,8 +55,8 @@ impl<'e, W: World> AnyLearner<'e, W> {
             Algorithm::QLearningRbf => finite.gaussian.unwrap_or(finite.table),
             _ => finite.table,
         };
-        let lesson = policy.map_or(FlatLesson::ActionValues, |policy| {
-            FlatLesson::PolicyValues(policy.clone())
+        let method = policy.map_or(FlatMethod::ActionValues, |policy| {
+            FlatMethod::PolicyValues(policy.clone())
         });
         let Experiment {
             world,
@@ -63,8 +65,8 @@ impl<'e, W: World> AnyLearner<'e, W> {
             ..
         } = experiment;
         let learning = &scenario.learning;
-        Self::Flat(Box::new(Flat::new(
-            world, encoder, learning, finite, map, lesson,
+        Self::Flat(Box::new(FlatLearner::new(
+            world, encoder, learning, finite, map, method,
         )))
     }
 

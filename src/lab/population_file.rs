@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::checkpoint_error::CheckpointError;
 use crate::evolution::{Individual, Origin, TreeError, read_tree};
 use crate::hierarchy::to_text;
-use crate::learning::{CompositeValues, Hierarchy, Skill, Skills};
+use crate::learning::{CompositeValues, Hierarchy, PrimitiveSet, PrimitiveValues};
 use crate::scenario::{LearningSettings, PrimitiveLearning, Scenario};
 use crate::worlds::{Catalogue, SubtaskId};
 
@@ -50,22 +50,22 @@ struct ChildFile {
 }
 
 impl PrimitiveFile {
-    pub(super) fn of(skill: &Skill, catalogue: &Catalogue) -> Self {
+    pub(super) fn of(primitive: &PrimitiveValues, catalogue: &Catalogue) -> Self {
         Self {
-            subtask: skill.subtask.name(catalogue).to_owned(),
-            actions: skill.vectors().map(<[f32]>::to_vec).collect(),
+            subtask: primitive.subtask.name(catalogue).to_owned(),
+            actions: primitive.vectors().map(<[f32]>::to_vec).collect(),
         }
     }
 
-    pub(super) fn skill(
+    pub(super) fn primitive(
         &self,
         place: &str,
         catalogue: &Catalogue,
-    ) -> Result<Skill, CheckpointError> {
+    ) -> Result<PrimitiveValues, CheckpointError> {
         let subtask = catalogue.find(&self.subtask).ok_or_else(|| {
             CheckpointError::misfit(place, format!("found subtask {:?}", self.subtask))
         })?;
-        Skill::from_vectors(subtask, catalogue, &self.actions).ok_or_else(|| {
+        PrimitiveValues::from_vectors(subtask, catalogue, &self.actions).ok_or_else(|| {
             let width = catalogue.width(subtask);
             let actions = catalogue.subtask(subtask).actions();
             CheckpointError::misfit(
@@ -96,10 +96,10 @@ impl IndividualFile {
                     .collect(),
             })
             .collect();
-        let primitives = individual.skills.as_ref().map(|skills| -> Vec<_> {
-            let skills = skills.all().iter();
-            skills
-                .map(|skill| PrimitiveFile::of(skill, catalogue))
+        let primitives = individual.primitives.as_ref().map(|primitives| -> Vec<_> {
+            let primitives = primitives.all().iter();
+            primitives
+                .map(|primitive| PrimitiveFile::of(primitive, catalogue))
                 .collect()
         });
         Self {
@@ -165,20 +165,20 @@ impl IndividualFile {
             id: self.id,
             origin: self.origin.clone(),
             hierarchy,
-            skills: self.skills(place, catalogue, &scenario.learning)?,
+            primitives: self.primitives(place, catalogue, &scenario.learning)?,
         })
     }
 
-    fn skills(
+    fn primitives(
         &self,
         place: &str,
         catalogue: &Catalogue,
         learning: &LearningSettings,
-    ) -> Result<Option<Skills>, CheckpointError> {
+    ) -> Result<Option<PrimitiveSet>, CheckpointError> {
         let place = format!("{place}.primitives");
         let own = learning.primitive_learning == PrimitiveLearning::Individual;
         match &self.primitives {
-            Some(files) if own => skills(files, &place, catalogue).map(Some),
+            Some(files) if own => primitives(files, &place, catalogue).map(Some),
             None => Ok(None),
             Some(_) => Err(CheckpointError::misfit(
                 &place,
@@ -189,14 +189,14 @@ impl IndividualFile {
 }
 
 /// The primitive subtasks that a file lists.
-pub(super) fn skills(
+pub(super) fn primitives(
     files: &[PrimitiveFile],
     place: &str,
     catalogue: &Catalogue,
-) -> Result<Skills, CheckpointError> {
+) -> Result<PrimitiveSet, CheckpointError> {
     let all = files.iter().enumerate();
-    let all = all.map(|(index, file)| file.skill(&format!("{place}[{index}]"), catalogue));
-    Skills::new(all.collect::<Result<_, _>>()?, catalogue).ok_or_else(|| {
+    let all = all.map(|(index, file)| file.primitive(&format!("{place}[{index}]"), catalogue));
+    PrimitiveSet::new(all.collect::<Result<_, _>>()?, catalogue).ok_or_else(|| {
         CheckpointError::misfit(
             place,
             String::from("allowed: each primitive subtask once, in order"),

@@ -19,7 +19,7 @@ use super::controls::Controls;
 use super::event::Event;
 use super::folder::{Keep, RunFolder};
 use super::log::Log;
-use crate::evolution::{Experiment, GenerationRecord, State};
+use crate::evolution::{EvolutionState, Experiment, GenerationRecord};
 use crate::files::{link_atomically, write_atomically, write_in_one_step};
 use crate::worlds::World;
 
@@ -36,9 +36,9 @@ pub(super) enum Message {
     /// A recorded event.
     Event(Box<Event>),
     /// The state after the events so far.
-    State(Arc<State>),
+    State(Arc<EvolutionState>),
     /// A generation that has lived, and the state after it.
-    Generation(Box<GenerationRecord>, Arc<State>),
+    Generation(Box<GenerationRecord>, Arc<EvolutionState>),
 }
 
 /// Why a run cannot be recorded.
@@ -64,7 +64,7 @@ pub(super) struct Recorder<'r, W: World> {
 
 /// A state that is not in `checkpoint.json` yet.
 struct Pending {
-    state: Arc<State>,
+    state: Arc<EvolutionState>,
     position: LogPosition,
 }
 
@@ -148,7 +148,7 @@ impl<W: World> Recorder<'_, W> {
         Ok(())
     }
 
-    fn keeps(&self, state: &State) -> bool {
+    fn keeps(&self, state: &EvolutionState) -> bool {
         state.generation > 0 && self.keep.keeps(state.generation)
     }
 

@@ -14,7 +14,7 @@ use super::outcome::{BestIndividual, Outcome};
 use super::pulse::Pulse;
 use super::recorder::{Message, QUEUE_CAPACITY, Recorder};
 use super::run_error::RunError;
-use crate::evolution::{Evolution, Experiment, State, Workers};
+use crate::evolution::{Evolution, EvolutionState, Experiment, Workers};
 use crate::files::{read_text, write_atomically};
 use crate::learning::Stopped;
 use crate::worlds::World;
@@ -30,7 +30,7 @@ pub(super) struct Work<W: World> {
     pub(super) workers: Workers,
     pub(super) keep: Keep,
     pub(super) controls: Controls,
-    pub(super) state: Option<State>,
+    pub(super) state: Option<EvolutionState>,
 }
 
 /// How far evolution came.
@@ -240,7 +240,7 @@ impl<W: World> Work<W> {
 }
 
 impl Progress {
-    fn note(&mut self, state: &State) {
+    fn note(&mut self, state: &EvolutionState) {
         self.generations = state.generation;
         self.converged = state.converged;
         self.control_steps = state.control_steps;

@@ -11,9 +11,9 @@ use super::gate::{Gate, Stopped};
 use super::hierarchy::Hierarchy;
 use super::observe::Observer;
 use super::plan::Plan;
+use super::primitives::PrimitiveSet;
 use super::selection::{Softmax, uniform};
-use super::situation::{Completion, Mind, Situation};
-use super::skills::Skills;
+use super::state_values::{Completion, Parameters, StateValues};
 use super::visited::Visited;
 use crate::random::Stream;
 use crate::scenario::{CompositeChoice, LearningSettings, PrimitiveLearning};
@@ -35,10 +35,10 @@ pub struct Agent<'r, W: World> {
     pub(super) world: &'r W,
     pub(super) settings: &'r LearningSettings,
     pub(super) softmax: Softmax,
-    pub(super) mind: Mind<'r>,
+    pub(super) parameters: Parameters<'r>,
     hierarchy_tree: crate::hierarchy::Tree,
-    pub(super) now: Situation,
-    pub(super) before: Situation,
+    pub(super) now: StateValues,
+    pub(super) before: StateValues,
     pub(super) visited: Visited<W::Percept>,
     pub(super) stack: Vec<Frame>,
     step_limit: u32,
@@ -69,19 +69,19 @@ impl<'r, W: World> Agent<'r, W> {
         encoder: &'r Encoder,
         settings: &'r LearningSettings,
         hierarchy: Hierarchy,
-        skills: Skills,
+        primitives: PrimitiveSet,
         step_limit: u32,
     ) -> Self {
         let catalogue = world.catalogue();
         let (tree, values) = hierarchy.into_parts();
         let plan = Plan::new(&tree, catalogue, |map| encoder.width(map));
-        let mind = Mind {
+        let parameters = Parameters {
             encoder,
             plan,
             values,
-            skills,
+            primitives,
         };
-        let situation = Situation::new(&mind, catalogue.terminal());
+        let situation = StateValues::new(&parameters, catalogue.terminal());
         let mut discounts = vec![1.0_f64];
         for power in 0..step_limit as usize {
             discounts.push(discounts[power] * settings.discount);
@@ -90,8 +90,8 @@ impl<'r, W: World> Agent<'r, W> {
             world,
             settings,
             softmax: Softmax::new(settings),
-            visited: Visited::new(&mind.plan, settings),
-            mind,
+            visited: Visited::new(&parameters.plan, settings),
+            parameters,
             hierarchy_tree: tree,
             before: situation.clone(),
             now: situation,
@@ -107,10 +107,10 @@ impl<'r, W: World> Agent<'r, W> {
 
     /// The hierarchy with what it has learned, and the primitive subtasks.
     #[must_use]
-    pub fn into_parts(self) -> (Hierarchy, Skills) {
-        let hierarchy = Hierarchy::from_parts(self.hierarchy_tree, self.mind.values);
+    pub fn into_parts(self) -> (Hierarchy, PrimitiveSet) {
+        let hierarchy = Hierarchy::from_parts(self.hierarchy_tree, self.parameters.values);
         let hierarchy = hierarchy.unwrap_or_else(|| unreachable!("values keep their tree's shape"));
-        (hierarchy, self.mind.skills)
+        (hierarchy, self.parameters.primitives)
     }
 
     /// Runs a whole trial of at most `step_limit` time steps; no more than the agent was
@@ -172,20 +172,20 @@ impl<'r, W: World> Agent<'r, W> {
         rng: &mut Stream,
         observer: &mut impl Observer<W>,
     ) {
-        let Some((node, skill)) = self.descend(rng, observer) else {
+        let Some((node, primitive)) = self.descend(rng, observer) else {
             return;
         };
         if self.stack.len() > 1 {
-            self.visited.push(self.mind.encoder, &mut self.now);
+            self.visited.push(self.parameters.encoder, &mut self.now);
             if let Some(percepts) = &mut self.visited.percepts {
                 percepts.push(self.world.percept(&trial.state));
             }
         }
-        let values = self.mind.action_values(&mut self.now, skill);
+        let values = self.parameters.action_values(&mut self.now, primitive);
         let limit = self.settings.temperature_limit as f32;
         let action = self.softmax.choose(values, limit, rng);
         let value = values[action];
-        let subtask = self.mind.plan.nodes[node].subtask;
+        let subtask = self.parameters.plan.nodes[node].subtask;
         let reward = self.world.step(&mut trial.state, subtask, action, rng);
         trial.steps += 1;
         trial.reward += f64::from(reward);
@@ -194,10 +194,16 @@ impl<'r, W: World> Agent<'r, W> {
         self.perceive(&trial.state);
         trial.done = self.now.state_type == self.world.catalogue().terminal();
         if self.settings.primitive_learning != PrimitiveLearning::Frozen {
-            let map = self.mind.plan.nodes[node].map;
-            let features = self.mind.encoder.encode(map, &mut self.before.features);
+            let map = self.parameters.plan.nodes[node].map;
+            let features = self
+                .parameters
+                .encoder
+                .encode(map, &mut self.before.features);
             let step = self.settings.learning_rate as f32 * (reward - value);
-            self.mind.skills.at_mut(skill).learn(action, features, step);
+            self.parameters
+                .primitives
+                .at_mut(primitive)
+                .learn(action, features, step);
             self.before.forget_values();
         }
         let limit = step_limit.min(self.step_limit);
@@ -211,7 +217,7 @@ impl<'r, W: World> Agent<'r, W> {
     }
 
     /// Algorithm 2.4, line 10, from the innermost active subtask down to a primitive
-    /// one: its node and its skill.
+    /// one: its node and its primitive.
     fn descend(
         &mut self,
         rng: &mut Stream,
@@ -225,8 +231,8 @@ impl<'r, W: World> Agent<'r, W> {
             let frame = self.stack.last_mut()?;
             frame.child = child;
             frame.started = started;
-            if let Some(skill) = self.mind.plan.nodes[child].skill {
-                return Some((child, skill));
+            if let Some(primitive) = self.parameters.plan.nodes[child].primitive {
+                return Some((child, primitive));
             }
             self.stack.push(Frame {
                 node: child,
@@ -237,7 +243,7 @@ impl<'r, W: World> Agent<'r, W> {
     }
 
     fn choose(&mut self, node: usize, rng: &mut Stream) -> Option<usize> {
-        let choices = self.mind.plan.choices(node, self.now.state_type);
+        let choices = self.parameters.plan.choices(node, self.now.state_type);
         if let [] | [_] = choices {
             return choices.first().copied();
         }
@@ -246,13 +252,13 @@ impl<'r, W: World> Agent<'r, W> {
         }
         self.scratch.clear();
         for &child in choices {
-            let value = self.mind.projected_value(&mut self.now, child);
+            let value = self.parameters.projected_value(&mut self.now, child);
             let inside = self
-                .mind
+                .parameters
                 .completion(&mut self.now, node, child, Completion::Inside);
             self.scratch.push(value + inside);
         }
-        let temperature = self.mind.temperature(node);
+        let temperature = self.parameters.temperature(node);
         Some(choices[self.softmax.choose(&self.scratch, temperature, rng)])
     }
 }

@@ -7,8 +7,8 @@
 use super::agent::{Agent, Trial};
 use super::lessons::pseudo_reward;
 use super::observe::{Observer, Update};
-use super::selection::{Rule, Softmax};
-use super::situation::{Completion, Mind, Situation};
+use super::selection::{SelectionRule, Softmax};
+use super::state_values::{Completion, Parameters, StateValues};
 use crate::random::Stream;
 use crate::scenario::{CompositeChoice, LearningSettings, PrimitiveLearning};
 use crate::worlds::{StateType, World};
@@ -48,7 +48,7 @@ pub struct Level {
     /// Whether it chose in this very step; else its active child goes on.
     pub chose: bool,
     /// How it chooses in this state.
-    pub rule: Rule,
+    pub rule: SelectionRule,
     /// The children that can act, in order.
     pub choices: Vec<Choice>,
     /// The child that is active.
@@ -78,7 +78,7 @@ pub struct ActionChoice {
     /// The temperature that actions are chosen at.
     pub temperature: f32,
     /// How it chooses.
-    pub rule: Rule,
+    pub rule: SelectionRule,
     /// Q_prim of every action.
     pub values: Vec<f32>,
     /// The probability of every action.
@@ -101,7 +101,7 @@ pub struct Change {
 /// What a composite node learned when a child of it returned (Algorithm 2.4, lines 13
 /// to 22).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lesson {
+pub struct UpdateTrace {
     /// The node.
     pub node: usize,
     /// The child that returned.
@@ -116,12 +116,12 @@ pub struct Lesson {
     /// C of the child in that state.
     pub c: Change,
     /// How the node itself terminated; `None` if it goes on or was cut off.
-    pub termination: Option<Termination>,
+    pub termination: Option<NodeTermination>,
 }
 
 /// How a composite node terminated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Termination {
+pub struct NodeTermination {
     /// Whether at its goal.
     pub at_goal: bool,
     /// Its temperature.
@@ -138,7 +138,7 @@ pub struct Explanation {
     /// The primitive subtask's reward for it.
     pub reward: f32,
     /// What was learned, from the innermost node outwards.
-    pub lessons: Vec<Lesson>,
+    pub update_traces: Vec<UpdateTrace>,
 }
 
 /// What an agent was seen doing in one step.
@@ -173,7 +173,7 @@ impl<W: World> Agent<'_, W> {
     /// Temperature of a composite node.
     #[must_use]
     pub fn temperature(&self, node: usize) -> f32 {
-        self.mind.temperature(node)
+        self.parameters.temperature(node)
     }
 
     /// One time step as [`Agent::advance`] takes it, explained; `None` if the trial is
@@ -186,7 +186,7 @@ impl<W: World> Agent<'_, W> {
     ) -> Option<Explanation> {
         let percept = self.world.percept(&trial.state);
         let mut past = Past {
-            mind: self.mind.clone(),
+            parameters: self.parameters.clone(),
             now: self.now.clone(),
             frames: self
                 .stack
@@ -199,21 +199,26 @@ impl<W: World> Agent<'_, W> {
         let mut witness = Witness::default();
         self.advance(trial, step_limit, rng, &mut witness);
         let (node, action, reward) = witness.action?;
-        let mut again = Situation::new(&self.mind, past.now.state_type);
+        let mut again = StateValues::new(&self.parameters, past.now.state_type);
         again.load(past.now.state_type, percept.as_ref());
         Some(Explanation {
             levels: past.levels(&witness),
-            action: past.action(&self.mind, node, action, &mut again),
+            action: past.action(&self.parameters, node, action, &mut again),
             reward,
-            lessons: past.lessons(&self.mind, self.now.state_type, &witness, &mut again),
+            update_traces: past.update_traces(
+                &self.parameters,
+                self.now.state_type,
+                &witness,
+                &mut again,
+            ),
         })
     }
 }
 
 /// What an agent knew before a step.
 struct Past<'r> {
-    mind: Mind<'r>,
-    now: Situation,
+    parameters: Parameters<'r>,
+    now: StateValues,
     /// Active nodes, each with the child invoked last.
     frames: Vec<(usize, usize)>,
     softmax: Softmax,
@@ -232,11 +237,11 @@ impl Past<'_> {
         path.into_iter()
             .map(|(node, active)| {
                 let (rule, choices) =
-                    self.mind
+                    self.parameters
                         .choices(&mut self.now, node, self.softmax, self.settings);
                 Level {
                     node,
-                    temperature: self.mind.temperature(node),
+                    temperature: self.parameters.temperature(node),
                     invoked: invoked(node),
                     chose: chose(node),
                     rule,
@@ -249,13 +254,18 @@ impl Past<'_> {
 
     fn action(
         &mut self,
-        after: &Mind<'_>,
+        after: &Parameters<'_>,
         node: usize,
         chosen: usize,
-        again: &mut Situation,
+        again: &mut StateValues,
     ) -> ActionChoice {
-        let skill = self.mind.plan.nodes[node].skill.unwrap_or_default();
-        let values = self.mind.action_values(&mut self.now, skill).to_vec();
+        let primitive = self.parameters.plan.nodes[node]
+            .primitive
+            .unwrap_or_default();
+        let values = self
+            .parameters
+            .action_values(&mut self.now, primitive)
+            .to_vec();
         let temperature = self.settings.temperature_limit as f32;
         let mut probabilities = vec![0.0; values.len()];
         let rule = self
@@ -264,7 +274,7 @@ impl Past<'_> {
         let learns = self.settings.primitive_learning != PrimitiveLearning::Frozen;
         let learned = learns.then(|| Change {
             before: values[chosen],
-            after: after.action_values(again, skill)[chosen],
+            after: after.action_values(again, primitive)[chosen],
         });
         ActionChoice {
             node,
@@ -277,28 +287,28 @@ impl Past<'_> {
         }
     }
 
-    fn lessons(
+    fn update_traces(
         &mut self,
-        after: &Mind<'_>,
+        after: &Parameters<'_>,
         reached: StateType,
         witness: &Witness,
-        again: &mut Situation,
-    ) -> Vec<Lesson> {
+        again: &mut StateValues,
+    ) -> Vec<UpdateTrace> {
         let taught = witness
             .updates
             .chunk_by(|one, next| (one.node, one.child) == (next.node, next.child));
-        let mut lessons = Vec::new();
+        let mut update_traces = Vec::new();
         for updates in taught {
             let (node, child) = (updates[0].node, updates[0].child);
             let terminated = witness.terminated.iter().find(|&&(who, _)| who == node);
             let now = &mut self.now;
             let mut change = |which| Change {
-                before: self.mind.completion(now, node, child, which),
+                before: self.parameters.completion(now, node, child, which),
                 after: after.completion(again, node, child, which),
             };
             let (c_tilde, c) = (change(Completion::Inside), change(Completion::Outside));
-            let goal = self.mind.plan.nodes[node].goal;
-            lessons.push(Lesson {
+            let goal = self.parameters.plan.nodes[node].goal;
+            update_traces.push(UpdateTrace {
                 node,
                 child,
                 pseudo_reward: pseudo_reward(
@@ -309,28 +319,28 @@ impl Past<'_> {
                 updates: updates.to_vec(),
                 c_tilde,
                 c,
-                termination: terminated.map(|&(_, at_goal)| Termination {
+                termination: terminated.map(|&(_, at_goal)| NodeTermination {
                     at_goal,
                     temperature: Change {
-                        before: self.mind.temperature(node),
+                        before: self.parameters.temperature(node),
                         after: after.temperature(node),
                     },
                 }),
             });
         }
-        lessons
+        update_traces
     }
 }
 
-impl Mind<'_> {
+impl Parameters<'_> {
     /// The children that a composite node can choose among in a state, and how it does.
     pub(super) fn choices(
         &self,
-        now: &mut Situation,
+        now: &mut StateValues,
         node: usize,
         softmax: Softmax,
         settings: &LearningSettings,
-    ) -> (Rule, Vec<Choice>) {
+    ) -> (SelectionRule, Vec<Choice>) {
         let children = self.plan.choices(node, now.state_type);
         let mut choices: Vec<_> = children
             .iter()
@@ -343,10 +353,10 @@ impl Mind<'_> {
             })
             .collect();
         if choices.len() < 2 {
-            return (Rule::OnlyChoice, choices);
+            return (SelectionRule::OnlyChoice, choices);
         }
         if settings.composite_choice == CompositeChoice::Random {
-            return (Rule::Uniform, choices);
+            return (SelectionRule::Uniform, choices);
         }
         let values: Vec<_> = choices.iter().map(Choice::preference).collect();
         let mut probabilities = vec![0.0; values.len()];

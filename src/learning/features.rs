@@ -163,13 +163,13 @@ mod tests {
     use proptest::prelude::*;
 
     fn world(width: RbfWidth, proximity_centres: usize) -> ForagingWorld {
-        let WorldSettings::Foraging(mut model) = Scenario::load("environment-1").unwrap().world
+        let WorldSettings::Foraging(mut settings) = Scenario::load("environment-1").unwrap().world
         else {
             unreachable!("it is a foraging scenario");
         };
-        model.features.rbf_width = width;
-        model.features.proximity_centres = proximity_centres;
-        ForagingWorld::new(&model).unwrap()
+        settings.features.rbf_width = width;
+        settings.features.proximity_centres = proximity_centres;
+        ForagingWorld::new(&settings).unwrap()
     }
 
     /// Equation 2.22 as it is printed, on the whole grid.

@@ -17,7 +17,7 @@ use crate::worlds::{MapId, World};
 
 /// What a flat learner learns.
 #[derive(Clone, Debug)]
-pub enum FlatLesson {
+pub enum FlatMethod {
     /// V of the policy that it is given (Algorithm 2.1).
     PolicyValues(PolicyTable),
     /// Q of the optimal policy, choosing by softmax and epsilon-greedily (Algorithms 2.2
@@ -38,13 +38,13 @@ pub struct Episode {
 
 /// A learner of values over the primitive actions of a finite world.
 #[derive(Clone, Debug)]
-pub struct Flat<'r, W: World> {
+pub struct FlatLearner<'r, W: World> {
     world: &'r W,
     encoder: &'r Encoder,
     settings: &'r LearningSettings,
     finite: &'r Mdp<W::Percept>,
     map: MapId,
-    lesson: FlatLesson,
+    method: FlatMethod,
     softmax: Softmax,
     temperature: f32,
     /// Parameter vectors: one an action, or a single one for V.
@@ -54,7 +54,7 @@ pub struct Flat<'r, W: World> {
     next: Features,
 }
 
-impl<'r, W: World> Flat<'r, W> {
+impl<'r, W: World> FlatLearner<'r, W> {
     /// A learner that knows nothing, with features of this map.
     #[must_use]
     pub fn new(
@@ -63,14 +63,14 @@ impl<'r, W: World> Flat<'r, W> {
         settings: &'r LearningSettings,
         finite: &'r Mdp<W::Percept>,
         map: MapId,
-        lesson: FlatLesson,
+        method: FlatMethod,
     ) -> Self {
         let width = world.catalogue().maps[map.index()].width();
         let mut vector = vec![settings.initial_parameter as f32; width];
         vector.resize(encoder.width(map), 0.0);
-        let vectors = match lesson {
-            FlatLesson::PolicyValues(_) => 1,
-            FlatLesson::ActionValues => finite.actions.len(),
+        let vectors = match method {
+            FlatMethod::PolicyValues(_) => 1,
+            FlatMethod::ActionValues => finite.actions.len(),
         };
         Self {
             world,
@@ -78,7 +78,7 @@ impl<'r, W: World> Flat<'r, W> {
             settings,
             finite,
             map,
-            lesson,
+            method,
             softmax: Softmax::new(settings),
             temperature: settings.initial_temperature as f32,
             theta: vec![vector; vectors],
@@ -129,7 +129,7 @@ impl<'r, W: World> Flat<'r, W> {
 
     /// An action in the present state, of the given policy or by what has been learned.
     fn choose(&mut self, rng: &mut Stream) -> usize {
-        let FlatLesson::PolicyValues(policy) = &self.lesson else {
+        let FlatMethod::PolicyValues(policy) = &self.method else {
             let values = values(&self.theta, self.encoder.encode(self.map, &mut self.now));
             return self.softmax.choose(&values, self.temperature, rng);
         };
@@ -155,9 +155,9 @@ impl<'r, W: World> Flat<'r, W> {
             }
         };
         let features = self.encoder.encode(self.map, &mut self.now);
-        let theta = match self.lesson {
-            FlatLesson::PolicyValues(_) => &mut self.theta[0],
-            FlatLesson::ActionValues => &mut self.theta[action],
+        let theta = match self.method {
+            FlatMethod::PolicyValues(_) => &mut self.theta[0],
+            FlatMethod::ActionValues => &mut self.theta[action],
         };
         let target = reward + self.settings.discount as f32 * ahead;
         let step = self.settings.learning_rate as f32 * (target - value(theta, features));
@@ -166,7 +166,7 @@ impl<'r, W: World> Flat<'r, W> {
         }
     }
 
-    /// Q of every action for what is perceived; V alone under [`FlatLesson::PolicyValues`].
+    /// Q of every action for what is perceived; V alone under [`FlatMethod::PolicyValues`].
     #[must_use]
     pub fn values(&mut self, percept: &W::Percept) -> Vec<f32> {
         self.next.load(percept.as_ref());

@@ -2,6 +2,7 @@
 
 use super::linear::padded;
 use crate::hierarchy::Tree;
+use crate::scenario::LearningSettings;
 use crate::worlds::{Catalogue, SubtaskId};
 
 /// What a composite subtask has learned: its temperature and, for each child, the
@@ -52,17 +53,16 @@ impl CompositeValues {
         subtask: SubtaskId,
         children: &[SubtaskId],
         catalogue: &Catalogue,
-        temperature: f32,
-        initial: f32,
+        learning: &LearningSettings,
     ) -> Self {
         let mut values = Self {
-            temperature,
+            temperature: learning.initial_temperature as f32,
             parameters: Vec::new(),
             layouts: Vec::with_capacity(children.len()),
         };
         for &child in children {
             let layout = Layout::of(subtask, child, catalogue);
-            let mut block = vec![initial; layout.width];
+            let mut block = vec![learning.initial_parameter as f32; layout.width];
             block.resize(layout.stride(), 0.0);
             let both = block.repeat(2 * layout.blocks);
             values.parameters.extend(both);
@@ -146,12 +146,12 @@ pub struct Hierarchy {
 impl Hierarchy {
     /// A hierarchy that has learned nothing.
     #[must_use]
-    pub fn new(tree: Tree, catalogue: &Catalogue, temperature: f32, initial: f32) -> Self {
+    pub fn new(tree: Tree, catalogue: &Catalogue, learning: &LearningSettings) -> Self {
         let value = |node| {
             let subtask = tree.subtask(node);
             let children: Vec<_> = tree.children(node).map(|c| tree.subtask(c)).collect();
             (!children.is_empty())
-                .then(|| CompositeValues::new(subtask, &children, catalogue, temperature, initial))
+                .then(|| CompositeValues::new(subtask, &children, catalogue, learning))
         };
         let values = (0..tree.nodes().len()).map(value).collect();
         Self { tree, values }

@@ -3,7 +3,7 @@
 use super::agent::{Agent, Frame};
 use super::linear::Replay;
 use super::observe::{Observer, Update};
-use super::situation::{Completion, Mind};
+use super::state_values::{Completion, Parameters};
 use crate::scenario::{CompletionBootstrap, CoolOn, LearningSettings, PseudoReward};
 use crate::worlds::{StateType, World};
 
@@ -12,7 +12,10 @@ impl<W: World> Agent<'_, W> {
     /// that goes on.
     pub(super) fn ascend(&mut self, truncated: bool, observer: &mut impl Observer<W>) {
         while let Some(&frame) = self.stack.last() {
-            let terminal = !self.mind.plan.can_act(frame.node, self.now.state_type);
+            let terminal = !self
+                .parameters
+                .plan
+                .can_act(frame.node, self.now.state_type);
             self.learn(frame, terminal, observer);
             if self.stack.len() == 1 {
                 self.visited.clear();
@@ -37,31 +40,34 @@ impl<W: World> Agent<'_, W> {
             child,
             started,
         } = frame;
-        let mind = &mut self.mind;
+        let parameters = &mut self.parameters;
         let pseudo_reward = pseudo_reward(
             self.settings,
-            mind.plan.nodes[node].goal.contains(self.now.state_type),
+            parameters.plan.nodes[node]
+                .goal
+                .contains(self.now.state_type),
             terminal,
         );
         let (mut inside, mut outside, mut best) = (0.0, 0.0, None);
         if !terminal {
-            let (a_star, projected) = mind.best_child(&mut self.now, node);
-            inside = mind.completion(&mut self.now, node, a_star, Completion::Inside);
-            outside = projected + mind.completion(&mut self.now, node, a_star, Completion::Outside);
+            let (a_star, projected) = parameters.best_child(&mut self.now, node);
+            inside = parameters.completion(&mut self.now, node, a_star, Completion::Inside);
+            outside =
+                projected + parameters.completion(&mut self.now, node, a_star, Completion::Outside);
             match self.settings.completion_bootstrap {
                 CompletionBootstrap::NextState => inside += projected,
                 CompletionBootstrap::AsPrinted => best = Some(a_star),
             }
         }
         inside += pseudo_reward;
-        let map = mind.plan.nodes[child].completion.map;
-        if mind.plan.nodes[child].skill.is_some() {
+        let map = parameters.plan.nodes[child].completion.map;
+        if parameters.plan.nodes[child].primitive.is_some() {
             let before = &mut self.before;
             let state_type = before.state_type;
-            if let Some(a_star) = best.filter(|&a| mind.plan.can_act(a, state_type)) {
-                inside += mind.projected_value(before, a_star);
+            if let Some(a_star) = best.filter(|&a| parameters.plan.can_act(a, state_type)) {
+                inside += parameters.projected_value(before, a_star);
             }
-            let features = mind.encoder.encode(map, &mut before.features);
+            let features = parameters.encoder.encode(map, &mut before.features);
             let lesson = Lesson {
                 state_type,
                 features,
@@ -70,7 +76,7 @@ impl<W: World> Agent<'_, W> {
                 targets: [inside, outside],
                 learning_rate: self.settings.learning_rate as f32,
             };
-            mind.study(node, child, lesson, observer);
+            parameters.study(node, child, lesson, observer);
         } else {
             let states = self.visited.types.len();
             let mut end = states;
@@ -82,11 +88,11 @@ impl<W: World> Agent<'_, W> {
                 if let Some(a_star) = best {
                     // The bootstrap value is another one in each state.
                     begin = end - 1;
-                    if mind.plan.can_act(a_star, state_type)
+                    if parameters.plan.can_act(a_star, state_type)
                         && let Some(percepts) = &self.visited.percepts
                     {
                         self.before.load(state_type, percepts[begin].as_ref());
-                        inside += mind.projected_value(&mut self.before, a_star);
+                        inside += parameters.projected_value(&mut self.before, a_star);
                     }
                 }
                 let steps = states - end + 1;
@@ -98,23 +104,23 @@ impl<W: World> Agent<'_, W> {
                     targets: [inside, outside],
                     learning_rate: self.settings.learning_rate as f32,
                 };
-                mind.study(node, child, lesson, observer);
+                parameters.study(node, child, lesson, observer);
                 end = begin;
             }
         }
-        self.now.forget(&self.mind.plan, child);
+        self.now.forget(&self.parameters.plan, child);
     }
 
     /// The temperature falls after line 22, never below its limit (Thesis 3.1).
     fn cool(&mut self, node: usize, observer: &mut impl Observer<W>) {
-        let at_goal = self.mind.plan.nodes[node]
+        let at_goal = self.parameters.plan.nodes[node]
             .goal
             .contains(self.now.state_type);
         observer.terminated(node, at_goal);
         if self.settings.cool_on == CoolOn::Goal && !at_goal {
             return;
         }
-        if let Some(values) = &mut self.mind.values[node] {
+        if let Some(values) = &mut self.parameters.values[node] {
             let cooled = values.temperature * self.settings.temperature_decrease as f32;
             values.temperature = cooled.max(self.settings.temperature_limit as f32);
         }
@@ -146,7 +152,7 @@ struct Lesson<'a> {
     learning_rate: f32,
 }
 
-impl Mind<'_> {
+impl Parameters<'_> {
     /// Updates C~ and C of a composite node for a child.
     #[inline(always)]
     fn study<W: World>(

@@ -14,7 +14,7 @@ pub(super) struct PlanNode {
     /// Its parent's completion functions for it.
     pub(super) completion: CompletionPlan,
     /// The place among the catalogue's primitives; `None` for a composite subtask.
-    pub(super) skill: Option<usize>,
+    pub(super) primitive: Option<usize>,
 }
 
 /// How the completion functions of a parent for a child lie in memory.
@@ -74,7 +74,7 @@ impl Plan {
                     stride,
                     vector,
                 },
-                skill: catalogue.primitives().position(|p| p == node.subtask),
+                primitive: catalogue.primitives().position(|p| p == node.subtask),
             });
             for state_type in (0..types).map(|t| StateType(t as u8)) {
                 let acts = able[index].contains(state_type);
@@ -98,15 +98,15 @@ impl Plan {
 
     /// Whether all these nodes are the same primitive subtask: then it does not matter
     /// which is chosen.
-    pub(super) fn leads_to_one_skill(&self, nodes: &[usize]) -> bool {
-        let skill = |node: &usize| self.nodes[*node].skill;
-        let first = nodes.first().and_then(skill);
-        first.is_some() && nodes.iter().all(|node| skill(node) == first)
+    pub(super) fn leads_to_one_primitive(&self, nodes: &[usize]) -> bool {
+        let primitive = |node: &usize| self.nodes[*node].primitive;
+        let first = nodes.first().and_then(primitive);
+        first.is_some() && nodes.iter().all(|node| primitive(node) == first)
     }
 
     /// Whether a subtask can act in a state type.
     pub(super) fn can_act(&self, node: usize, state_type: StateType) -> bool {
-        match self.nodes[node].skill {
+        match self.nodes[node].primitive {
             Some(_) => self.nodes[node].active.contains(state_type),
             None => !self.choices(node, state_type).is_empty(),
         }

@@ -12,7 +12,7 @@ const LANES: usize = 8;
 
 /// How one of several is chosen in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
+pub enum SelectionRule {
     /// There is no other.
     OnlyChoice,
     /// All alike: the control `composite_choice: random`.
@@ -56,7 +56,12 @@ impl Softmax {
 
     /// Writes the probability with which each of `values` is chosen, and says by which
     /// rule.
-    pub fn probabilities(&self, values: &[f32], temperature: f32, out: &mut [f32]) -> Rule {
+    pub fn probabilities(
+        &self,
+        values: &[f32],
+        temperature: f32,
+        out: &mut [f32],
+    ) -> SelectionRule {
         match values.len() > LANES {
             true => self.weigh(values, &mut in_lanes(values), temperature, out),
             false => self.weigh(values, &mut few_in_lanes(values), temperature, out),
@@ -70,19 +75,19 @@ impl Softmax {
         weights: &mut [f32],
         temperature: f32,
         out: &mut [f32],
-    ) -> Rule {
+    ) -> SelectionRule {
         let count = values.len() as f32;
         boltzmann(weights, temperature);
         let sum = weights.iter().sum();
         if self.is_greedy(sum) {
             out.fill(self.epsilon / count);
             out[greedy(values)] += 1.0 - self.epsilon;
-            Rule::EpsilonGreedy
+            SelectionRule::EpsilonGreedy
         } else {
             for (probability, weight) in out.iter_mut().zip(weights) {
                 *probability = *weight / sum;
             }
-            Rule::Softmax
+            SelectionRule::Softmax
         }
     }
 
@@ -189,7 +194,7 @@ mod tests {
     };
 
     fn frequencies(values: &[f32], temperature: f32) -> Vec<f64> {
-        let mut rng = stream(1, 0, 0, Purpose::Life);
+        let mut rng = stream(1, 0, 0, Purpose::Trials);
         let mut counts = vec![0.0; values.len()];
         for _ in 0..200_000 {
             counts[SOFTMAX.choose(values, temperature, &mut rng)] += 1.0 / 200_000.0;

@@ -5,8 +5,8 @@ use rand::RngExt;
 use super::features::{Encoder, Features};
 use super::gate::{Gate, Stopped};
 use super::linear::Row;
+use super::primitives::PrimitiveValues;
 use super::selection::{Softmax, uniform};
-use super::skills::Skill;
 use crate::random::Stream;
 use crate::scenario::LearningSettings;
 use crate::worlds::{Exploration, TrainingSettings};
@@ -22,12 +22,12 @@ use crate::worlds::{SubtaskId, World};
 ///
 /// Where the world has no training for it, the subtask has learned nothing.
 #[derive(Debug)]
-pub struct Trainee<'t, W: World> {
+pub struct PrimitiveTrainer<'t, W: World> {
     world: &'t W,
     encoder: &'t Encoder,
     settings: &'t LearningSettings,
     softmax: Softmax,
-    skill: Skill,
+    primitive: PrimitiveValues,
     rng: Stream,
     temperature: f32,
     /// Control steps to come.
@@ -36,18 +36,18 @@ pub struct Trainee<'t, W: World> {
     room: Vec<Row>,
 }
 
-impl<'t, W: World> Trainee<'t, W> {
+impl<'t, W: World> PrimitiveTrainer<'t, W> {
     /// A primitive subtask that has learned nothing yet.
     #[must_use]
     pub fn new(
         world: &'t W,
         encoder: &'t Encoder,
         settings: &'t LearningSettings,
-        primitive: SubtaskId,
+        subtask: SubtaskId,
         rng: Stream,
     ) -> Self {
         let initial = settings.initial_parameter as f32;
-        let skill = Skill::new(primitive, world.catalogue(), initial);
+        let primitive = PrimitiveValues::new(subtask, world.catalogue(), initial);
         Self {
             world,
             encoder,
@@ -55,12 +55,10 @@ impl<'t, W: World> Trainee<'t, W> {
             softmax: Softmax::new(settings),
             rng,
             temperature: settings.initial_temperature as f32,
-            left: world
-                .training(primitive)
-                .map_or(0, |training| training.steps),
+            left: world.training(subtask).map_or(0, |training| training.steps),
             features: encoder.features(),
-            room: skill.values(),
-            skill,
+            room: primitive.values(),
+            primitive,
         }
     }
 
@@ -77,12 +75,15 @@ impl<'t, W: World> Trainee<'t, W> {
     /// When the gate is stopped.
     pub fn train(&mut self, steps: u32, gate: &Gate) -> Result<(), Stopped> {
         let end = self.left.saturating_sub(steps);
-        let Some(training) = self.world.training(self.skill.subtask) else {
+        let Some(training) = self.world.training(self.primitive.subtask) else {
             return Ok(());
         };
         while self.left > end {
             let begun = self.left;
-            match self.world.begin_training(self.skill.subtask, &mut self.rng) {
+            match self
+                .world
+                .begin_training(self.primitive.subtask, &mut self.rng)
+            {
                 Some(state) => self.episode(state, training),
                 None => self.left = 0,
             }
@@ -95,17 +96,17 @@ impl<'t, W: World> Trainee<'t, W> {
 
     /// The subtask with what it has learned.
     #[must_use]
-    pub fn into_skill(self) -> Skill {
-        self.skill
+    pub fn into_values(self) -> PrimitiveValues {
+        self.primitive
     }
 
     fn episode(&mut self, mut state: W::State, training: &TrainingSettings) {
-        let subtask = self.skill.subtask;
+        let subtask = self.primitive.subtask;
         let actions = self.world.catalogue().subtask(subtask).actions();
         for _ in 0..training.episode_steps.min(self.left) {
             self.features.load(self.world.percept(&state).as_ref());
-            let features = self.encoder.encode(self.skill.map, &mut self.features);
-            let values = self.skill.evaluate(features, &mut self.room);
+            let features = self.encoder.encode(self.primitive.map, &mut self.features);
+            let values = self.primitive.evaluate(features, &mut self.room);
             let rng = &mut self.rng;
             let action = match training.exploration {
                 Exploration::Uniform => uniform(rng.random(), actions),
@@ -115,7 +116,7 @@ impl<'t, W: World> Trainee<'t, W> {
             let reward = self.world.step(&mut state, subtask, action, rng);
             let error = reward - values[action];
             let step = self.settings.learning_rate as f32 * error;
-            self.skill.learn(action, features, step);
+            self.primitive.learn(action, features, step);
             self.left -= 1;
             if !self.world.training_goes_on(subtask, &before, &mut state) {
                 break;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::features::Encoder;
 use super::plan::Plan;
-use super::situation::Situation;
+use super::state_values::StateValues;
 use crate::scenario::{CompletionBootstrap, LearningSettings};
 use crate::worlds::{MapId, StateType};
 
@@ -31,7 +31,7 @@ struct LoggedFeatures {
 impl<P> Visited<P> {
     pub(super) fn new(plan: &Plan, settings: &LearningSettings) -> Self {
         let mut features: Vec<LoggedFeatures> = Vec::new();
-        for node in plan.nodes.iter().filter(|node| node.skill.is_none()) {
+        for node in plan.nodes.iter().filter(|node| node.primitive.is_none()) {
             let completion = &node.completion;
             let known = features.iter().any(|logged| logged.map == completion.map);
             if node.parent.is_some() && !known {
@@ -61,7 +61,7 @@ impl<P> Visited<P> {
     }
 
     #[inline]
-    pub(super) fn push(&mut self, encoder: &Encoder, now: &mut Situation) {
+    pub(super) fn push(&mut self, encoder: &Encoder, now: &mut StateValues) {
         self.types.push(now.state_type);
         for logged in &mut self.features {
             let features = encoder.encode(logged.map, &mut now.features);

@@ -167,11 +167,15 @@ fn every_part_of_a_step_is_on_the_screen() {
             }
         }
     }
-    for lesson in &trace.explanation.lessons {
-        let told = format!("{} learns about {}", name(lesson.node), name(lesson.child));
+    for update_trace in &trace.explanation.update_traces {
+        let told = format!(
+            "{} learns about {}",
+            name(update_trace.node),
+            name(update_trace.child)
+        );
         assert!(text.contains(&told), "{told} in\n{text}");
-        assert!(text.contains(&format!("pseudo-reward {}", lesson.pseudo_reward)));
-        assert!(text.contains(&format!("N {}", lesson.updates[0].steps)));
+        assert!(text.contains(&format!("pseudo-reward {}", update_trace.pseudo_reward)));
+        assert!(text.contains(&format!("N {}", update_trace.updates[0].steps)));
     }
     assert!(text.contains(&format!("reward {:.3}", trace.explanation.reward)));
 }

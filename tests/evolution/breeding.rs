@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use maxq_lab::evolution::{Individual, Origin, State};
+use maxq_lab::evolution::{EvolutionState, Individual, Origin};
 
 use super::trees::chance;
 use super::{assert_frequencies, experiment, individuals, state, step, still_scenario};
@@ -10,7 +10,7 @@ use super::{assert_frequencies, experiment, individuals, state, step, still_scen
 /// All pairs of sites are valid here, so crossover changes no probability.
 const SWAPPABLE: &str = "(Root Wander Wander)";
 
-fn ids(state: &State) -> Vec<u64> {
+fn ids(state: &EvolutionState) -> Vec<u64> {
     state
         .individuals
         .iter()

@@ -6,7 +6,7 @@ use maxq_lab::evolution::{Individual, Inherited, Origin, Parent, crossover};
 use maxq_lab::hierarchy::{parse, to_text};
 use maxq_lab::learning::CompositeValues;
 use maxq_lab::random::{Purpose, stream};
-use maxq_lab::scenario::{Inheritance, Scenario};
+use maxq_lab::scenario::{Inheritance, LearningSettings, Scenario};
 use maxq_lab::worlds::{Catalogue, World};
 use proptest::prelude::*;
 
@@ -122,7 +122,8 @@ fn check_offspring(
                 .iter()
                 .map(|child| catalogue.find(child.name).unwrap());
             let children: Vec<_> = children.collect();
-            let new = CompositeValues::new(subtask, &children, catalogue, 2.0, 0.123);
+            let new =
+                CompositeValues::new(subtask, &children, catalogue, &LearningSettings::default());
             prop_assert_eq!(found[name], &new);
         } else {
             let (parent, from) = match graft.contains(name) {

@@ -6,7 +6,7 @@ use maxq_lab::evolution::{Individual, Mutation, Origin, crossover, mutated};
 use maxq_lab::hierarchy::parse;
 use maxq_lab::learning::CompositeValues;
 use maxq_lab::random::{Purpose, stream};
-use maxq_lab::scenario::Scenario;
+use maxq_lab::scenario::{LearningSettings, Scenario};
 use maxq_lab::worlds::{Catalogue, World};
 use proptest::prelude::*;
 use rand::Rng;
@@ -69,7 +69,12 @@ fn any_individual(seed: u64, catalogue: &Catalogue) -> Individual {
 fn fresh(subtask: &str, children: &[Nested], catalogue: &Catalogue) -> CompositeValues {
     let id = |name: &str| catalogue.find(name).unwrap();
     let children: Vec<_> = children.iter().map(|child| id(child.name)).collect();
-    CompositeValues::new(id(subtask), &children, catalogue, 2.0, 0.123)
+    CompositeValues::new(
+        id(subtask),
+        &children,
+        catalogue,
+        &LearningSettings::default(),
+    )
 }
 
 proptest! {

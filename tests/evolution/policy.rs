@@ -69,10 +69,10 @@ fn frequencies(
     };
     let encoder = Encoder::new(catalogue);
     let learning = &experiment.scenario.learning;
-    let skills = untrained(catalogue);
-    let mut agent = Agent::new(&world, &encoder, learning, hierarchy.clone(), skills, 1);
+    let primitives = untrained(catalogue);
+    let mut agent = Agent::new(&world, &encoder, learning, hierarchy.clone(), primitives, 1);
     let mut samples = samples_stream();
-    let mut rng = stream(9, 0, 0, Purpose::Life);
+    let mut rng = stream(9, 0, 0, Purpose::Trials);
     let primitives: Vec<_> = catalogue.primitives().collect();
     let mut of = |state_type| {
         let mut counts = vec![0.0; primitives.len()];
@@ -104,9 +104,9 @@ fn probabilities(
     let (gate, world) = (Gate::default(), &experiment.world);
     let samples = PolicySamples::draw(world, count, &mut samples_stream(), &gate).unwrap();
     let learning = &experiment.scenario.learning;
-    let skills = untrained(experiment.catalogue());
+    let primitives = untrained(experiment.catalogue());
     let encoder = &experiment.encoder;
-    let found = samples.probabilities(world, encoder, learning, hierarchy, &skills, &gate);
+    let found = samples.probabilities(world, encoder, learning, hierarchy, &primitives, &gate);
     found.unwrap()
 }
 

@@ -4,7 +4,7 @@
 //! first thing to go wrong when rewards, features, episodes or temperatures do.
 
 use maxq_lab::evolution::{Experiment, Workers};
-use maxq_lab::learning::{Gate, Skills};
+use maxq_lab::learning::{Gate, PrimitiveSet};
 use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::World;
 use maxq_lab::worlds::foraging::ForagingWorld;
@@ -14,13 +14,13 @@ use super::world;
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=4;
 
 /// Primitive subtasks trained in environments 1 and 2.
-fn trained() -> Vec<(Experiment<ForagingWorld>, Skills)> {
+fn trained() -> Vec<(Experiment<ForagingWorld>, PrimitiveSet)> {
     let workers = Workers::new(2).unwrap();
     let of = |(scenario, seed): (&str, u64)| {
         let experiment = Scenario::load(scenario).unwrap();
         let experiment = Experiment::new(experiment, world(scenario)).unwrap();
-        let skills = experiment.train(seed, 0, &workers, &Gate::default());
-        (experiment, skills.unwrap())
+        let primitives = experiment.train(seed, 0, &workers, &Gate::default());
+        (experiment, primitives.unwrap())
     };
     let scenarios = ["environment-1", "environment-2"].into_iter();
     let runs = scenarios.flat_map(|scenario| SEEDS.map(move |seed| (scenario, seed)));
@@ -29,19 +29,19 @@ fn trained() -> Vec<(Experiment<ForagingWorld>, Skills)> {
 
 /// The action values of a primitive subtask at one of its probes.
 fn values(
-    (experiment, skills): &(Experiment<ForagingWorld>, Skills),
+    (experiment, primitives): &(Experiment<ForagingWorld>, PrimitiveSet),
     name: &str,
     label: &str,
 ) -> Vec<f32> {
     let subtask = experiment.catalogue().find(name).unwrap();
-    let skill = skills
+    let primitive = primitives
         .all()
         .iter()
-        .find(|skill| skill.subtask == subtask)
+        .find(|primitive| primitive.subtask == subtask)
         .unwrap();
     let probes = experiment.world.probes(subtask);
     let probe = probes.iter().find(|probe| probe.label == label).unwrap();
-    skill.action_values(&experiment.encoder, &probe.percept)
+    primitive.action_values(&experiment.encoder, &probe.percept)
 }
 
 fn greedy(values: &[f32]) -> usize {

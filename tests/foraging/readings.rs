@@ -20,7 +20,7 @@ fn ahead(gap_mm: f64) -> Vec<f64> {
         position: Point2::new(3000.0 - RADIUS - gap_mm, 1000.0),
         heading: Vector2::x(),
     };
-    let mut rng = stream(1, 0, 0, Purpose::Life);
+    let mut rng = stream(1, 0, 0, Purpose::Trials);
     let mut reading = || world.begin(&pose, &mut rng).proximity_mm[AHEAD];
     (0..20_000).map(|_| f64::from(reading())).collect()
 }
@@ -33,7 +33,7 @@ fn share(values: &[f64], of: impl Fn(f64) -> bool) -> f64 {
 fn readings_and_percepts_are_in_their_ranges_and_near_the_truth() {
     for scenario in SCENARIOS {
         let world = world(scenario);
-        let mut rng = stream(2, 0, 0, Purpose::Life);
+        let mut rng = stream(2, 0, 0, Purpose::Trials);
         let mut state = world.begin(&world.draw_start(&mut rng), &mut rng);
         let mut between = 0;
         for step in 0..20_000 {
@@ -111,7 +111,7 @@ fn every_reading_has_noise_of_its_own() {
         position: Point2::new(1500.0, RADIUS + 100.0),
         heading: Vector2::x(),
     };
-    let mut rng = stream(3, 0, 0, Purpose::Life);
+    let mut rng = stream(3, 0, 0, Purpose::Trials);
     let mut noise = || {
         let state = world.begin(&pose, &mut rng);
         let target = state.target.unwrap();

@@ -21,7 +21,7 @@ struct Step {
 /// Walks for a number of steps; a new trial begins after a delivery and now and then.
 /// Targets are approached often enough to be reached.
 fn walk(world: &ForagingWorld, seed: u64, steps: usize, mut visit: impl FnMut(&Step)) {
-    let mut rng = stream(seed, 0, 0, Purpose::Life);
+    let mut rng = stream(seed, 0, 0, Purpose::Trials);
     let mut state = world.begin(&world.draw_start(&mut rng), &mut rng);
     let mut held: Option<(SubtaskId, usize)> = None;
     for _ in 0..steps {
@@ -248,7 +248,7 @@ fn actions_are_exact_arcs_in_the_open() {
         [600.0, 100.0],
         "(right, left), Wander's fourth"
     );
-    let mut rng = stream(6, 0, 0, Purpose::Life);
+    let mut rng = stream(6, 0, 0, Purpose::Trials);
     for (name, actions) in table {
         for (action, [right, left]) in actions.iter().enumerate() {
             let angle: f64 = rng.random::<f64>() * 6.0;

@@ -2,7 +2,7 @@
 
 use maxq_lab::evolution::{Experiment, Workers};
 use maxq_lab::hierarchy::parse;
-use maxq_lab::learning::{Agent, Gate, Hierarchy, Skills};
+use maxq_lab::learning::{Agent, Gate, Hierarchy, PrimitiveSet};
 use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::WorldSettings;
 use maxq_lab::worlds::foraging::ForagingSettings;
@@ -19,7 +19,7 @@ pub struct Lab {
     pub experiment: Experiment<ForagingWorld>,
     model: ForagingSettings,
     /// The primitive subtasks.
-    pub skills: Skills,
+    pub primitives: PrimitiveSet,
 }
 
 impl Lab {
@@ -45,18 +45,18 @@ impl Lab {
         let world = ForagingWorld::new(&model).unwrap();
         let experiment = Experiment::new(scenario, world).unwrap();
         let workers = Workers::new(1).unwrap();
-        let skills = experiment.train(1, 0, &workers, &Gate::default()).unwrap();
+        let primitives = experiment.train(1, 0, &workers, &Gate::default()).unwrap();
         Self {
             experiment,
             model: *model,
-            skills,
+            primitives,
         }
     }
 
     /// A hierarchy that has learned nothing.
-    pub fn newborn(&self, tree: &str) -> Hierarchy {
+    pub fn untrained(&self, tree: &str) -> Hierarchy {
         let tree = parse(tree, self.experiment.catalogue()).unwrap();
-        self.experiment.newborn(tree)
+        self.experiment.untrained(tree)
     }
 
     /// An agent with this hierarchy.
@@ -66,7 +66,7 @@ impl Lab {
             &self.experiment.encoder,
             &self.experiment.scenario.learning,
             hierarchy,
-            self.skills.clone(),
+            self.primitives.clone(),
             STEP_LIMIT,
         )
     }

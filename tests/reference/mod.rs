@@ -14,7 +14,7 @@ pub use replay::{Event, Recorder};
 pub use subtasks::{DELIVERED, Row, row};
 
 use maxq_lab::hierarchy::Tree;
-use maxq_lab::learning::{Hierarchy, Skills, Update};
+use maxq_lab::learning::{Hierarchy, PrimitiveSet, Update};
 use maxq_lab::scenario::{
     CompletionBootstrap, CoolOn, LearningSettings, PrimitiveLearning, PseudoReward,
 };
@@ -108,7 +108,7 @@ pub struct MaxqQ<'a> {
     /// theta^Qprim of each primitive subtask and action.
     pub theta_q: Vec<Vec<Vec<f64>>>,
     /// The place of each node's subtask in `theta_q`.
-    skill: Vec<usize>,
+    primitive: Vec<usize>,
     /// Temperature of each node.
     pub tau: Vec<f64>,
     reading: Reading,
@@ -120,10 +120,10 @@ pub struct MaxqQ<'a> {
 }
 
 impl<'a> MaxqQ<'a> {
-    /// The learner with the values that `hierarchy` and `skills` have.
+    /// The learner with the values that `hierarchy` and `primitives` have.
     pub fn new(
         hierarchy: &'a Hierarchy,
-        skills: &Skills,
+        primitives: &PrimitiveSet,
         catalogue: &Catalogue,
         model: &'a LearningSettings,
         reading: Reading,
@@ -139,12 +139,12 @@ impl<'a> MaxqQ<'a> {
             model,
             theta_c_tilde: vec![Vec::new(); nodes.len()],
             theta_c: vec![Vec::new(); nodes.len()],
-            theta_q: skills
+            theta_q: primitives
                 .all()
                 .iter()
-                .map(|skill| skill.vectors().map(double).collect())
+                .map(|primitive| primitive.vectors().map(double).collect())
                 .collect(),
-            skill: nodes
+            primitive: nodes
                 .clone()
                 .map(|i| {
                     let position = catalogue.primitives().position(|p| p == tree.subtask(i));
@@ -194,7 +194,7 @@ impl<'a> MaxqQ<'a> {
             if self.model.primitive_learning == PrimitiveLearning::Shared {
                 let error = r - self.q_prim(i, &s)[action];
                 let features = s.phi(self.rows[i].input);
-                let theta = &mut self.theta_q[self.skill[i]][action];
+                let theta = &mut self.theta_q[self.primitive[i]][action];
                 learn(theta, self.model.learning_rate * error, features, 0);
             }
             seq.insert(0, s);
@@ -368,7 +368,7 @@ impl<'a> MaxqQ<'a> {
     /// Eq. 3.9, all actions.
     pub fn q_prim(&self, i: usize, s: &State) -> Vec<f64> {
         let features = s.phi(self.rows[i].input);
-        let thetas = self.theta_q[self.skill[i]].iter();
+        let thetas = self.theta_q[self.primitive[i]].iter();
         thetas.map(|theta| dot(theta, features)).collect()
     }
 

@@ -10,7 +10,7 @@ use crate::{BY_HAND, Place, wait_for_end, wait_for_good_end};
 fn rubbish_and_storms_of_sizes_do_no_harm() {
     let place = Place::new();
     let mut pty = place.start(&[]);
-    let mut rng = stream(1, 0, 0, Purpose::Life);
+    let mut rng = stream(1, 0, 0, Purpose::Trials);
     for _ in 0..200 {
         let length = rng.random_range(1..40);
         // No Ctrl-C and no q: they would ask, and rubbish might answer. No Ctrl-Z.

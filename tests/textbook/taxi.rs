@@ -2,7 +2,7 @@
 
 use maxq_lab::evolution::Experiment;
 use maxq_lab::lab::Algorithm;
-use maxq_lab::learning::{Agent, Gate, Hierarchy, Policy, Skills};
+use maxq_lab::learning::{Agent, Gate, Hierarchy, Policy, PrimitiveSet};
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::worlds::World;
 use maxq_lab::worlds::taxi::{Passenger, TaxiState, TaxiWorld};
@@ -13,10 +13,10 @@ use super::{hand_made, learned, taxi};
 const TRIALS: usize = 20_000;
 
 /// The hand-made hierarchy, taught by random trials.
-fn taught(experiment: &Experiment<TaxiWorld>) -> (Hierarchy, Skills) {
-    let skills = Skills::untrained(experiment.catalogue(), &experiment.scenario.learning);
-    let mut agent = experiment.agent(experiment.newborn(hand_made(experiment)), skills);
-    let mut rng = stream(1, 0, 0, Purpose::Life);
+fn taught(experiment: &Experiment<TaxiWorld>) -> (Hierarchy, PrimitiveSet) {
+    let primitives = PrimitiveSet::untrained(experiment.catalogue(), &experiment.scenario.learning);
+    let mut agent = experiment.agent(experiment.untrained(hand_made(experiment)), primitives);
+    let mut rng = stream(1, 0, 0, Purpose::Trials);
     let limit = experiment.scenario.evolution.trial_step_limit;
     for _ in 0..TRIALS {
         let start = experiment.world.draw_start(&mut rng);
@@ -38,7 +38,7 @@ const S1: TaxiState = TaxiState {
 fn check_the_values_of_2_2_2(settings: &[&str]) {
     let experiment = taxi("taxi", settings);
     let world = &experiment.world;
-    let (hierarchy, skills) = taught(&experiment);
+    let (hierarchy, primitives) = taught(&experiment);
     let (catalogue, tree) = (experiment.catalogue(), hierarchy.tree());
     let node = |name: &str, under: &str| {
         let nodes = 0..tree.nodes().len();
@@ -54,7 +54,7 @@ fn check_the_values_of_2_2_2(settings: &[&str]) {
         &experiment.encoder,
         learning,
         &hierarchy,
-        &skills,
+        &primitives,
     );
     policy.look(world.state_type(&S1), world.percept(&S1).as_ref());
     let close = |found: f32, expected: f32| assert!((found - expected).abs() < 1e-3, "{found}");
@@ -97,15 +97,15 @@ fn the_greedy_policy_is_optimal_from_every_start() {
     for abstraction in ["true", "false"] {
         let setting = format!("world.taxi.state_abstraction={abstraction}");
         let experiment = taxi("taxi", &[&setting]);
-        let (hierarchy, skills) = taught(&experiment);
+        let (hierarchy, primitives) = taught(&experiment);
         let finite = experiment.world.mdp().unwrap();
         let exact = finite.optimal_values(1.0).0;
         // Neither explores nor learns.
         let mut still = experiment.scenario.learning.clone();
         (still.probability_limit, still.epsilon, still.learning_rate) = (0.0, 0.0, 0.0);
         let (world, encoder) = (&experiment.world, &experiment.encoder);
-        let mut agent = Agent::new(world, encoder, &still, hierarchy, skills, 100);
-        let mut rng = stream(2, 0, 0, Purpose::Life);
+        let mut agent = Agent::new(world, encoder, &still, hierarchy, primitives, 100);
+        let mut rng = stream(2, 0, 0, Purpose::Trials);
         let mut starts = 0;
         for taxi in 0..25 {
             for (source, destination) in (0..4).flat_map(|s| (0..4).map(move |d| (s, d))) {

@@ -14,7 +14,7 @@ const SAMPLES: usize = 400;
 /// as often as the model says.
 fn check<W: Scenic>(world: &W) -> usize {
     let finite = world.mdp().unwrap();
-    let mut rng = stream(3, 0, 0, Purpose::Life);
+    let mut rng = stream(3, 0, 0, Purpose::Trials);
     let [columns, rows] = world.scenery().grid.unwrap();
     let number = |state: &W::State| {
         let (state_type, percept) = (world.state_type(state), world.percept(state));

@@ -7,14 +7,14 @@ use std::thread;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
-use crate::evolution::State;
+use crate::evolution::EvolutionState;
 use crate::lab::specimen::Archive;
 
 /// The population after a generation, or why it cannot be had.
 #[derive(Debug)]
 pub(super) struct Loaded {
     pub(super) generation: u64,
-    pub(super) state: Result<Arc<State>, String>,
+    pub(super) state: Result<Arc<EvolutionState>, String>,
 }
 
 /// Reads populations until it is dropped.

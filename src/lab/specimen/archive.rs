@@ -8,7 +8,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::Bench;
-use crate::evolution::State;
+use crate::evolution::EvolutionState;
 use crate::lab::checkpoint::Checkpoint;
 use crate::lab::checkpoint_error::CheckpointError;
 use crate::lab::controls::Controls;
@@ -60,7 +60,7 @@ pub struct Archive {
     folder: PathBuf,
     live: Option<Controls>,
     /// The latest used first.
-    cache: VecDeque<Arc<State>>,
+    cache: VecDeque<Arc<EvolutionState>>,
 }
 
 impl Archive {
@@ -80,7 +80,7 @@ impl Archive {
     ///
     /// # Errors
     /// When there is none, or it cannot be read.
-    pub fn latest(&self) -> Result<Arc<State>, ArchiveError> {
+    pub fn latest(&self) -> Result<Arc<EvolutionState>, ArchiveError> {
         if let Some(state) = self.live_state() {
             return Ok(state);
         }
@@ -94,7 +94,7 @@ impl Archive {
     ///
     /// # Errors
     /// When it was not kept, or cannot be read.
-    pub fn generation(&mut self, generation: u64) -> Result<Arc<State>, ArchiveError> {
+    pub fn generation(&mut self, generation: u64) -> Result<Arc<EvolutionState>, ArchiveError> {
         let state = match self.cached(generation).or_else(|| self.live_state()) {
             Some(state) if state.generation == generation => state,
             _ => Arc::new(self.kept(generation)?),
@@ -104,17 +104,17 @@ impl Archive {
         Ok(state)
     }
 
-    fn cached(&mut self, generation: u64) -> Option<Arc<State>> {
+    fn cached(&mut self, generation: u64) -> Option<Arc<EvolutionState>> {
         let mut states = self.cache.iter();
         let place = states.position(|state| state.generation == generation)?;
         self.cache.remove(place)
     }
 
-    fn live_state(&self) -> Option<Arc<State>> {
+    fn live_state(&self) -> Option<Arc<EvolutionState>> {
         self.live.as_ref().and_then(Controls::latest)
     }
 
-    fn kept(&self, generation: u64) -> Result<State, ArchiveError> {
+    fn kept(&self, generation: u64) -> Result<EvolutionState, ArchiveError> {
         let generations = self.folder.join("generations");
         let kept = self.read(&generations.join(format!("{generation:06}.json")))?;
         if let Some(state) = kept {
@@ -130,7 +130,7 @@ impl Archive {
     }
 
     /// The population in a file, if there is a file.
-    fn read(&self, path: &Path) -> Result<Option<State>, ArchiveError> {
+    fn read(&self, path: &Path) -> Result<Option<EvolutionState>, ArchiveError> {
         let file = path.display().to_string();
         let wrong = |source| ArchiveError::Checkpoint {
             file: file.clone(),

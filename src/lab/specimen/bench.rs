@@ -6,7 +6,7 @@ use super::policy_map::{MapView, PolicyMap, policy_map};
 use super::profile::{Profile, profiles};
 use super::rollout::{Rollout, WorldRollout};
 use super::{Bench, Specimen, Start};
-use crate::evolution::{Experiment, State};
+use crate::evolution::{EvolutionState, Experiment};
 use crate::lab::checkpoint::Checkpoint;
 use crate::lab::checkpoint_error::CheckpointError;
 use crate::lab::worlds::{SetupError, WorldTask, with_world};
@@ -68,7 +68,7 @@ impl<W: Scenic + 'static> WorldBench<W> {
             encoder,
             &scenario.learning,
             &specimen.individual.hierarchy,
-            specimen.skills,
+            specimen.primitives,
         )
     }
 
@@ -154,11 +154,11 @@ impl<W: Scenic + 'static> Bench for WorldBench<W> {
         let hierarchy = &specimen.individual.hierarchy;
         let (model, gate) = (&scenario.learning, Gate::default());
         self.samples()
-            .probabilities(world, encoder, model, hierarchy, specimen.skills, &gate)
+            .probabilities(world, encoder, model, hierarchy, specimen.primitives, &gate)
             .unwrap_or_else(|_| unreachable!("nobody stops a gate of one's own"))
     }
 
-    fn population(&self, checkpoint: &Checkpoint) -> Result<State, CheckpointError> {
+    fn population(&self, checkpoint: &Checkpoint) -> Result<EvolutionState, CheckpointError> {
         checkpoint.state(&self.experiment)
     }
 }

@@ -24,8 +24,8 @@ pub use start::{Start, StartError};
 
 use super::checkpoint::Checkpoint;
 use super::checkpoint_error::CheckpointError;
-use crate::evolution::{Individual, State};
-use crate::learning::{SelectionProbabilities, Skills};
+use crate::evolution::{EvolutionState, Individual};
+use crate::learning::{PrimitiveSet, SelectionProbabilities};
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 use crate::worlds::scene::Scenery;
@@ -36,23 +36,23 @@ pub struct Specimen<'s> {
     /// The individual.
     pub individual: &'s Individual,
     /// The primitive subtasks that it acts with.
-    pub skills: &'s Skills,
+    pub primitives: &'s PrimitiveSet,
 }
 
 impl<'s> Specimen<'s> {
     /// The individual at an index of a state, 0 being the best.
     #[must_use]
-    pub fn at(state: &'s State, index: usize) -> Option<Self> {
+    pub fn at(state: &'s EvolutionState, index: usize) -> Option<Self> {
         let individual = state.individuals.get(index)?;
         Some(Self {
             individual,
-            skills: individual.skills.as_ref().unwrap_or(&state.skills),
+            primitives: individual.primitives.as_ref().unwrap_or(&state.primitives),
         })
     }
 
     /// The individual with this id.
     #[must_use]
-    pub fn with_id(state: &'s State, id: u64) -> Option<Self> {
+    pub fn with_id(state: &'s EvolutionState, id: u64) -> Option<Self> {
         let mut individuals = state.individuals.iter();
         Self::at(
             state,
@@ -106,5 +106,5 @@ pub trait Bench: Send + Sync {
     ///
     /// # Errors
     /// When it does not fit the scenario.
-    fn population(&self, checkpoint: &Checkpoint) -> Result<State, CheckpointError>;
+    fn population(&self, checkpoint: &Checkpoint) -> Result<EvolutionState, CheckpointError>;
 }

@@ -77,9 +77,9 @@ fn action_profiles<W: Scenic>(
     policy: &mut Policy<'_>,
 ) -> Vec<Profile> {
     let catalogue = world.catalogue();
-    let skill = catalogue.primitives().position(|p| p == subtask);
+    let primitive = catalogue.primitives().position(|p| p == subtask);
     let state_type = catalogue.subtask(subtask).active.iter().next();
-    let (Some(skill), Some(state_type)) = (skill, state_type) else {
+    let (Some(primitive), Some(state_type)) = (primitive, state_type) else {
         return Vec::new();
     };
     let sweeps = world.sweeps(subtask, state_type).into_iter();
@@ -88,7 +88,7 @@ fn action_profiles<W: Scenic>(
             let mut curves: Vec<_> = actions.iter().map(|label| curve(label, None)).collect();
             for probe in &sweep.probes {
                 policy.look(state_type, probe.percept.as_ref());
-                for (curve, value) in curves.iter_mut().zip(policy.action_values(skill)) {
+                for (curve, value) in curves.iter_mut().zip(policy.action_values(primitive)) {
                     curve.values.push(*value);
                 }
             }

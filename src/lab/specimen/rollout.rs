@@ -130,7 +130,7 @@ impl<W: Scenic> WorldRollout<W> {
     ) -> Self {
         let hierarchy = specimen.individual.hierarchy.clone();
         let composite: Vec<_> = hierarchy.values().iter().map(Option::is_some).collect();
-        let mut agent = experiment.agent(hierarchy, specimen.skills.clone());
+        let mut agent = experiment.agent(hierarchy, specimen.primitives.clone());
         let trial = begin(&experiment.world, &mut agent, start, &mut rng);
         let mut rollout = Self {
             status: RolloutStatus {

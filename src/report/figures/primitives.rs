@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{Chart, Series};
 use crate::evolution::Experiment;
 use crate::lab::{Checkpoint, CheckpointError, SetupError, WorldTask, with_world};
-use crate::learning::Skill;
+use crate::learning::PrimitiveValues;
 use crate::scenario::Scenario;
 use crate::worlds::{Kind, Probe, World};
 
@@ -35,21 +35,21 @@ impl WorldTask for OfCheckpoint<'_> {
         let checkpoint = checkpoint.ok_or("holds no checkpoint.json")?;
         let state = checkpoint.state(&experiment).map_err(wrong)?;
         let charts = state
-            .skills
+            .primitives
             .all()
             .iter()
-            .filter_map(|skill| chart(&experiment, skill));
+            .filter_map(|primitive| chart(&experiment, primitive));
         Ok(charts.collect())
     }
 }
 
-fn chart<W: World>(experiment: &Experiment<W>, skill: &Skill) -> Option<Chart> {
+fn chart<W: World>(experiment: &Experiment<W>, primitive: &PrimitiveValues) -> Option<Chart> {
     let catalogue = experiment.catalogue();
-    let subtask = catalogue.subtask(skill.subtask);
+    let subtask = catalogue.subtask(primitive.subtask);
     let [axis] = catalogue.maps[subtask.map.index()].axes() else {
         return None;
     };
-    let probes = experiment.world.probes(skill.subtask);
+    let probes = experiment.world.probes(primitive.subtask);
     let (first, last) = (probes.first()?, probes.last()?);
     let (name, _) = first.readings.first()?;
     let input = |probe: &Probe<W::Percept>| probe.percept.as_ref().get(axis.input).copied();
@@ -67,7 +67,7 @@ fn chart<W: World>(experiment: &Experiment<W>, skill: &Skill) -> Option<Chart> {
         let share = point as f64 / (POINTS - 1) as f64;
         percept[axis.input] = from.0 + (to.0 - from.0) * share as f32;
         let x = from.1 + (to.1 - from.1) * share;
-        let values = skill.action_values(&experiment.encoder, &percept);
+        let values = primitive.action_values(&experiment.encoder, &percept);
         for (line, value) in lines.iter_mut().zip(values) {
             line.push((x, f64::from(value)));
         }

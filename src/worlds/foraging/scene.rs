@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn snapshots_show_what_the_state_says() {
         let world = world();
-        let mut rng = stream(1, 0, 0, Purpose::Life);
+        let mut rng = stream(1, 0, 0, Purpose::Trials);
         let (mut seen, mut carried) = (0, 0);
         for round in 0..400 {
             let start = world.draw_start(&mut rng);
@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn nobody_can_be_in_walls_or_outside() {
         let world = world();
-        let mut rng = stream(1, 0, 0, Purpose::Life);
+        let mut rng = stream(1, 0, 0, Purpose::Trials);
         for at in [
             [1700.0, 600.0],
             [-500.0, 300.0],

@@ -44,10 +44,14 @@ fn line(shown: &Shown<'_>, trace: &StepTrace) -> Line<'static> {
         shown.name(action.node),
         label.map_or("", String::as_str)
     );
-    let ends = trace.explanation.lessons.iter().filter_map(|lesson| {
-        let at_goal = lesson.termination?.at_goal;
-        Some((shown.name(lesson.node), at_goal))
-    });
+    let ends = trace
+        .explanation
+        .update_traces
+        .iter()
+        .filter_map(|update_trace| {
+            let at_goal = update_trace.termination?.at_goal;
+            Some((shown.name(update_trace.node), at_goal))
+        });
     let mut pen = Pen::new(shown.look)
         .right(&trace.step.to_string(), 5, Paint::Dim)
         .text(

@@ -55,41 +55,41 @@ pub(super) fn csv(shown: &Shown<'_>) -> String {
         "reward",
         trace.explanation.reward.to_string(),
     );
-    for lesson in &trace.explanation.lessons {
-        let child = shown.name(lesson.child);
+    for update_trace in &trace.explanation.update_traces {
+        let child = shown.name(update_trace.child);
         add(
-            lesson.node,
+            update_trace.node,
             child,
             "pseudo_reward",
-            lesson.pseudo_reward.to_string(),
+            update_trace.pseudo_reward.to_string(),
         );
         for (quantity, value) in [
-            ("c_tilde_before", lesson.c_tilde.before),
-            ("c_tilde_after", lesson.c_tilde.after),
-            ("c_before", lesson.c.before),
-            ("c_after", lesson.c.after),
+            ("c_tilde_before", update_trace.c_tilde.before),
+            ("c_tilde_after", update_trace.c_tilde.after),
+            ("c_before", update_trace.c.before),
+            ("c_after", update_trace.c.after),
         ] {
-            add(lesson.node, child, quantity, value.to_string());
+            add(update_trace.node, child, quantity, value.to_string());
         }
-        for update in &lesson.updates {
+        for update in &update_trace.updates {
             let n = update.steps;
             let (inside, outside) = (update.error_inside, update.error_outside);
             add(
-                lesson.node,
+                update_trace.node,
                 child,
                 &format!("error_c_tilde_n{n}"),
                 inside.to_string(),
             );
             add(
-                lesson.node,
+                update_trace.node,
                 child,
                 &format!("error_c_n{n}"),
                 outside.to_string(),
             );
         }
-        if let Some(end) = lesson.termination {
+        if let Some(end) = update_trace.termination {
             add(
-                lesson.node,
+                update_trace.node,
                 "",
                 "at_goal",
                 u8::from(end.at_goal).to_string(),

@@ -5,7 +5,7 @@ use ratatui::text::Line;
 use super::{Detail, Shown};
 use crate::dashboard::look::Paint;
 use crate::dashboard::look::lines::{Pen, TINY, is_tiny, number, told_apart};
-use crate::learning::{Change, Lesson, Update};
+use crate::learning::{Change, Update, UpdateTrace};
 
 /// Reward, terminations and updates.
 ///
@@ -24,8 +24,8 @@ pub(super) fn lines(shown: &Shown<'_>, columns: usize, detail: Detail) -> Vec<Li
         let pen = pen.text(" learns about its action   ", Paint::Text);
         lines.push(change(shown, pen, "Q", learned).line());
     }
-    for lesson in &explanation.lessons {
-        lines.extend(taught(shown, lesson, columns, detail));
+    for update_trace in &explanation.update_traces {
+        lines.extend(taught(shown, update_trace, columns, detail));
     }
     if let Some(ended) = &shown.trace.ended {
         let (text, paint) = match ended.delivered {
@@ -72,29 +72,29 @@ fn transition(shown: &Shown<'_>) -> Line<'static> {
 /// What a node learned, and whether it ended.
 fn taught(
     shown: &Shown<'_>,
-    lesson: &Lesson,
+    update_trace: &UpdateTrace,
     columns: usize,
     detail: Detail,
 ) -> Vec<Line<'static>> {
     let look = shown.look;
-    let pseudo = match lesson.pseudo_reward {
+    let pseudo = match update_trace.pseudo_reward {
         0.0 => Paint::Dim,
         _ => Paint::Bad,
     };
     let mut pen = Pen::new(look)
-        .text(shown.name(lesson.node), Paint::Title)
+        .text(shown.name(update_trace.node), Paint::Title)
         .text(" learns about ", Paint::Dim)
-        .text(shown.name(lesson.child), Paint::Text);
-    let text = format!("pseudo-reward {}", lesson.pseudo_reward);
+        .text(shown.name(update_trace.child), Paint::Text);
+    let text = format!("pseudo-reward {}", update_trace.pseudo_reward);
     if pen.column() + 2 + text.len() <= columns {
         pen = pen.text("  ", Paint::Text).text(text, pseudo);
     }
     let mut lines = vec![pen.line()];
     let pen = Pen::new(look).to(2);
-    let pen = change(shown, pen, "C~", lesson.c_tilde).text("   ", Paint::Text);
-    lines.push(change(shown, pen, "C", lesson.c).line());
-    lines.extend(updates(shown, &lesson.updates, detail.updates));
-    if let Some(end) = lesson.termination {
+    let pen = change(shown, pen, "C~", update_trace.c_tilde).text("   ", Paint::Text);
+    lines.push(change(shown, pen, "C", update_trace.c).line());
+    lines.extend(updates(shown, &update_trace.updates, detail.updates));
+    if let Some(end) = update_trace.termination {
         let (text, paint) = match end.at_goal {
             true => ("ends at its goal", Paint::Good),
             false => ("ends without its goal", Paint::Bad),

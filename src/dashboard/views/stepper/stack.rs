@@ -5,7 +5,7 @@ use ratatui::text::Line;
 use super::{Detail, Shown};
 use crate::dashboard::look::lines::{Pen, decimals, fixed, number, percent};
 use crate::dashboard::look::{Paint, shortened, width};
-use crate::learning::{ActionChoice, Choice, Explanation, Level, Rule};
+use crate::learning::{ActionChoice, Choice, Explanation, Level, SelectionRule};
 
 /// Columns below which numbers have a digit less.
 const NARROW: usize = 60;
@@ -118,10 +118,16 @@ fn how(shown: &Shown<'_>, level: &Level) -> [String; 3] {
             let short = shortened(active, SHORT, shown.look.signs);
             (format!("goes on with {active}"), format!("on with {short}"))
         }
-        (true, Rule::OnlyChoice) => (String::from("has one choice"), String::from("one choice")),
-        (true, Rule::Uniform) => (String::from("chooses at random"), String::from("at random")),
-        (true, Rule::Softmax) => (String::from("chooses by softmax"), String::from("softmax")),
-        (true, Rule::EpsilonGreedy) => (
+        (true, SelectionRule::OnlyChoice) => {
+            (String::from("has one choice"), String::from("one choice"))
+        }
+        (true, SelectionRule::Uniform) => {
+            (String::from("chooses at random"), String::from("at random"))
+        }
+        (true, SelectionRule::Softmax) => {
+            (String::from("chooses by softmax"), String::from("softmax"))
+        }
+        (true, SelectionRule::EpsilonGreedy) => (
             format!("chooses {epsilon}-greedily"),
             format!("{epsilon}-greedy"),
         ),
@@ -209,7 +215,7 @@ fn action(
 ) -> Vec<Line<'static>> {
     let signs = shown.look.signs;
     let how = match action.rule {
-        Rule::EpsilonGreedy => format!("{}-greedily", signs.epsilon),
+        SelectionRule::EpsilonGreedy => format!("{}-greedily", signs.epsilon),
         _ => String::from("by softmax"),
     };
     let title = Pen::new(shown.look)

@@ -7,7 +7,7 @@ use crate::worlds::{Catalogue, MapId, SubtaskId};
 
 /// The action values Q_prim of one primitive subtask (Thesis Eq. 3.1, 3.9).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Skill {
+pub struct PrimitiveValues {
     /// The subtask.
     pub subtask: SubtaskId,
     pub(super) map: MapId,
@@ -24,11 +24,11 @@ pub struct Skill {
 /// All primitive subtasks: the one copy that a population shares (Thesis 3.1), or an
 /// individual's own.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Skills {
-    skills: Vec<Skill>,
+pub struct PrimitiveSet {
+    primitives: Vec<PrimitiveValues>,
 }
 
-impl Skill {
+impl PrimitiveValues {
     /// A subtask that has learned nothing: every parameter at its initial value.
     #[must_use]
     pub fn new(subtask: SubtaskId, catalogue: &Catalogue, initial: f32) -> Self {
@@ -50,7 +50,7 @@ impl Skill {
         let width = catalogue.width(subtask);
         let fits = vectors.len() == catalogue.subtask(subtask).actions()
             && vectors.iter().all(|vector| vector.len() == width);
-        let mut skill = Self {
+        let mut primitive = Self {
             subtask,
             map: catalogue.subtask(subtask).map,
             width,
@@ -59,11 +59,11 @@ impl Skill {
             rows: Vec::new(),
         };
         let groups = vectors.len().div_ceil(ROW);
-        skill.rows = vec![[0.0; ROW]; groups * skill.rows_per_group()];
+        primitive.rows = vec![[0.0; ROW]; groups * primitive.rows_per_group()];
         for (action, vector) in vectors.iter().enumerate() {
-            skill.copy_to_rows(action, vector);
+            primitive.copy_to_rows(action, vector);
         }
-        fits.then_some(skill)
+        fits.then_some(primitive)
     }
 
     /// The parameter vectors, one an action.
@@ -128,38 +128,38 @@ impl Skill {
     }
 }
 
-impl Skills {
-    /// The given skills, one for each primitive subtask of the catalogue; `None` if
+impl PrimitiveSet {
+    /// The given primitives, one for each primitive subtask of the catalogue; `None` if
     /// they are not these.
     #[must_use]
-    pub fn new(skills: Vec<Skill>, catalogue: &Catalogue) -> Option<Self> {
-        let complete = skills
+    pub fn new(primitives: Vec<PrimitiveValues>, catalogue: &Catalogue) -> Option<Self> {
+        let complete = primitives
             .iter()
-            .map(|skill| skill.subtask)
+            .map(|primitive| primitive.subtask)
             .eq(catalogue.primitives());
-        complete.then_some(Self { skills })
+        complete.then_some(Self { primitives })
     }
 
-    /// Skills that have learned nothing.
+    /// PrimitiveSet that have learned nothing.
     #[must_use]
     pub fn untrained(catalogue: &Catalogue, settings: &LearningSettings) -> Self {
         let initial = settings.initial_parameter as f32;
         let primitives = catalogue.primitives();
         Self {
-            skills: primitives
-                .map(|subtask| Skill::new(subtask, catalogue, initial))
+            primitives: primitives
+                .map(|subtask| PrimitiveValues::new(subtask, catalogue, initial))
                 .collect(),
         }
     }
 
-    /// All skills in the order of the catalogue's primitive subtasks.
+    /// All primitives in the order of the catalogue's primitive subtasks.
     #[must_use]
-    pub fn all(&self) -> &[Skill] {
-        &self.skills
+    pub fn all(&self) -> &[PrimitiveValues] {
+        &self.primitives
     }
 
-    /// The skill at a place in that order.
-    pub(super) fn at_mut(&mut self, index: usize) -> &mut Skill {
-        &mut self.skills[index]
+    /// The primitive at a place in that order.
+    pub(super) fn at_mut(&mut self, index: usize) -> &mut PrimitiveValues {
+        &mut self.primitives[index]
     }
 }

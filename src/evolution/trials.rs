@@ -5,19 +5,19 @@ use rand::seq::SliceRandom;
 use super::experiment::Experiment;
 use super::individual::{Individual, Origin};
 use super::record::TrialRecord;
-use super::turns::Task;
-use crate::learning::{Agent, Gate, Hierarchy, Skills, Stopped};
+use super::turns::PooledTask;
+use crate::learning::{Agent, Gate, Hierarchy, PrimitiveSet, Stopped};
 use crate::random::{Purpose, Stream, stream};
 use crate::worlds::World;
 
 /// Where the trials of a generation start, the same for every individual: first those
 /// of the unscored half, then those of the scored one.
 #[derive(Clone, Debug)]
-pub(super) struct Starts<S> {
+pub(super) struct TrialStarts<S> {
     all: Vec<S>,
 }
 
-impl<S> Starts<S> {
+impl<S> TrialStarts<S> {
     pub(super) fn draw<W: World<Start = S>>(
         experiment: &Experiment<W>,
         seed: u64,
@@ -38,18 +38,18 @@ impl<S> Starts<S> {
 
 /// What came of an individual's generation.
 #[derive(Clone, Debug)]
-pub(super) struct Life {
+pub(super) struct TrialResults {
     /// Its hierarchy with what it has learned.
     pub(super) hierarchy: Hierarchy,
     /// The primitive subtasks, changed if they go on learning.
-    pub(super) skills: Skills,
+    pub(super) primitives: PrimitiveSet,
     /// The scored trials, in the order in which they were run.
     pub(super) scored: Vec<TrialRecord>,
     /// Time steps of all trials.
     pub(super) control_steps: u64,
 }
 
-impl Life {
+impl TrialResults {
     /// Time steps over the scored trials; smaller is better (Thesis 4.2).
     pub(super) fn fitness(&self) -> u64 {
         self.scored.iter().map(|trial| u64::from(trial.steps)).sum()
@@ -62,12 +62,12 @@ pub(super) fn is_experienced(individual: &Individual) -> bool {
     individual.origin == Origin::Reproduced
 }
 
-/// An individual that lives through a generation, trial by trial (Algorithm 3.1, line 3):
+/// An individual that results through a generation, trial by trial (Algorithm 3.1, line 3):
 /// each half of the trials in an order of its own, an experienced one only the scored half.
-pub(super) struct Living<'g, W: World> {
+pub(super) struct IndividualTrials<'g, W: World> {
     generation: Generation<'g, W>,
     individual: &'g Individual,
-    skills: &'g Skills,
+    primitives: &'g PrimitiveSet,
     /// Made when the first trial begins, by the thread that runs it.
     agent: Option<Agent<'g, W>>,
     rng: Stream,
@@ -82,7 +82,7 @@ pub(super) struct Living<'g, W: World> {
 /// What all individuals of a generation share.
 pub(super) struct Generation<'g, W: World> {
     pub(super) experiment: &'g Experiment<W>,
-    pub(super) starts: &'g Starts<W::Start>,
+    pub(super) starts: &'g TrialStarts<W::Start>,
     pub(super) seed: u64,
     pub(super) number: u64,
     pub(super) gate: &'g Gate,
@@ -98,11 +98,11 @@ impl<W: World> Clone for Generation<'_, W> {
 
 impl<W: World> Copy for Generation<'_, W> {}
 
-impl<'g, W: World> Living<'g, W> {
+impl<'g, W: World> IndividualTrials<'g, W> {
     pub(super) fn new(
         generation: Generation<'g, W>,
         individual: &'g Individual,
-        skills: &'g Skills,
+        primitives: &'g PrimitiveSet,
     ) -> Self {
         let Generation {
             starts,
@@ -117,9 +117,9 @@ impl<'g, W: World> Living<'g, W> {
         Self {
             generation,
             individual,
-            skills,
+            primitives,
             agent: None,
-            rng: stream(seed, number, individual.id, Purpose::Life),
+            rng: stream(seed, number, individual.id, Purpose::Trials),
             first,
             next: first,
             order: Vec::new(),
@@ -129,36 +129,36 @@ impl<'g, W: World> Living<'g, W> {
     }
 
     /// Runs the trials that are left.
-    pub(super) fn run(mut self) -> Result<Life, Stopped> {
+    pub(super) fn run(mut self) -> Result<TrialResults, Stopped> {
         while self.left().is_some() {
             self.turn()?;
         }
-        Ok(self.into_life())
+        Ok(self.into_results())
     }
 
-    pub(super) fn into_life(mut self) -> Life {
-        let agent = self.agent.take().unwrap_or_else(|| self.newborn());
-        let (hierarchy, skills) = agent.into_parts();
-        Life {
+    pub(super) fn into_results(mut self) -> TrialResults {
+        let agent = self.agent.take().unwrap_or_else(|| self.untrained());
+        let (hierarchy, primitives) = agent.into_parts();
+        TrialResults {
             hierarchy,
-            skills,
+            primitives,
             scored: self.scored,
             control_steps: self.control_steps,
         }
     }
 
-    fn newborn(&self) -> Agent<'g, W> {
+    fn untrained(&self) -> Agent<'g, W> {
         let hierarchy = self.individual.hierarchy.clone();
         let experiment = self.generation.experiment;
-        experiment.agent(hierarchy, self.skills.clone())
+        experiment.agent(hierarchy, self.primitives.clone())
     }
 }
 
-impl<W: World> Task for Living<'_, W> {
+impl<W: World> PooledTask for IndividualTrials<'_, W> {
     type Error = Stopped;
 
     /// Control steps, if the trials to come are as long as those that were and one at the
-    /// limit: a first trial that happens to be short must not put off a long life.
+    /// limit: a first trial that happens to be short must not put off a long results.
     fn left(&self) -> Option<f64> {
         let evolution = &self.generation.experiment.scenario.evolution;
         let to_come = self.generation.starts.all.len() - self.next;
@@ -187,7 +187,7 @@ impl<W: World> Task for Living<'_, W> {
         }
         let start = &starts.all[half_start + self.order[self.next - half_start]];
         let limit = experiment.scenario.evolution.trial_step_limit;
-        let mut agent = self.agent.take().unwrap_or_else(|| self.newborn());
+        let mut agent = self.agent.take().unwrap_or_else(|| self.untrained());
         let trial = agent.run_trial(start, limit, &mut self.rng, gate)?;
         self.agent = Some(agent);
         self.control_steps += u64::from(trial.steps);

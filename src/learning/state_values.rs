@@ -4,17 +4,17 @@ use super::features::{Encoder, Features};
 use super::hierarchy::CompositeValues;
 use super::linear::{self, Row};
 use super::plan::Plan;
-use super::skills::Skills;
+use super::primitives::PrimitiveSet;
 use crate::worlds::StateType;
 
 /// What decides an agent's values: its hierarchy and its primitive subtasks.
 #[derive(Clone, Debug)]
-pub(super) struct Mind<'r> {
+pub(super) struct Parameters<'r> {
     pub(super) encoder: &'r Encoder,
     pub(super) plan: Plan,
     /// In the order of the nodes; empty for primitive subtasks.
     pub(super) values: Vec<Option<CompositeValues>>,
-    pub(super) skills: Skills,
+    pub(super) primitives: PrimitiveSet,
 }
 
 /// A value with the number of the state that it was computed in.
@@ -26,7 +26,7 @@ struct Cached {
 
 /// The action values of a primitive subtask.
 #[derive(Clone, Debug)]
-struct SkillValues {
+struct ActionValues {
     state: u64,
     /// In whole rows.
     actions: Vec<Row>,
@@ -36,12 +36,12 @@ struct SkillValues {
 
 /// One state, with the values computed in it so far.
 #[derive(Clone, Debug)]
-pub(super) struct Situation {
+pub(super) struct StateValues {
     pub(super) state_type: StateType,
     pub(super) features: Features,
     /// The number of the state; cached values of another number are void.
     state: u64,
-    skills: Vec<SkillValues>,
+    primitives: Vec<ActionValues>,
     /// For each node but the root: C~ and C of its parent for it.
     completions: Vec<[Cached; 2]>,
     /// V of each composite node.
@@ -57,19 +57,19 @@ pub(super) enum Completion {
     Outside = 1,
 }
 
-impl Situation {
-    pub(super) fn new(mind: &Mind<'_>, terminal: StateType) -> Self {
-        let nodes = mind.plan.nodes.len();
-        let skills = mind.skills.all().iter();
+impl StateValues {
+    pub(super) fn new(parameters: &Parameters<'_>, terminal: StateType) -> Self {
+        let nodes = parameters.plan.nodes.len();
+        let primitives = parameters.primitives.all().iter();
         Self {
             state_type: terminal,
-            features: mind.encoder.features(),
+            features: parameters.encoder.features(),
             state: 0,
-            skills: skills
-                .map(|skill| SkillValues {
+            primitives: primitives
+                .map(|primitive| ActionValues {
                     state: 0,
-                    actions: skill.values(),
-                    count: skill.vectors().count(),
+                    actions: primitive.values(),
+                    count: primitive.vectors().count(),
                     best: 0.0,
                 })
                 .collect(),
@@ -104,35 +104,39 @@ impl Situation {
     }
 }
 
-impl Mind<'_> {
+impl Parameters<'_> {
     /// Q_prim of all actions of a primitive subtask (Thesis Eq. 3.9).
     #[inline]
-    pub(super) fn action_values<'s>(&self, now: &'s mut Situation, skill: usize) -> &'s [f32] {
-        self.evaluate_skill(now, skill);
-        let values = &now.skills[skill];
+    pub(super) fn action_values<'s>(
+        &self,
+        now: &'s mut StateValues,
+        primitive: usize,
+    ) -> &'s [f32] {
+        self.evaluate_primitive(now, primitive);
+        let values = &now.primitives[primitive];
         &values.actions.as_flattened()[..values.count]
     }
 
     #[inline]
-    fn evaluate_skill(&self, now: &mut Situation, index: usize) {
-        let values = &mut now.skills[index];
+    fn evaluate_primitive(&self, now: &mut StateValues, index: usize) {
+        let values = &mut now.primitives[index];
         if values.state == now.state {
             return;
         }
         values.state = now.state;
-        let skill = &self.skills.all()[index];
-        let features = self.encoder.encode(skill.map, &mut now.features);
-        let actions = skill.evaluate(features, &mut values.actions);
+        let primitive = &self.primitives.all()[index];
+        let features = self.encoder.encode(primitive.map, &mut now.features);
+        let actions = primitive.evaluate(features, &mut values.actions);
         let larger = |a: f32, &b: &f32| if b > a { b } else { a };
         values.best = actions.iter().fold(f32::NEG_INFINITY, larger);
     }
 
     /// V(i, s) of a node, Algorithm 2.5 with Eq. 3.2: choose the child with C~, return
     /// with C. The node can act in the state.
-    pub(super) fn projected_value(&self, now: &mut Situation, node: usize) -> f32 {
-        if let Some(skill) = self.plan.nodes[node].skill {
-            self.evaluate_skill(now, skill);
-            return now.skills[skill].best;
+    pub(super) fn projected_value(&self, now: &mut StateValues, node: usize) -> f32 {
+        if let Some(primitive) = self.plan.nodes[node].primitive {
+            self.evaluate_primitive(now, primitive);
+            return now.primitives[primitive].best;
         }
         let cached = now.projected[node];
         if cached.state == now.state {
@@ -148,7 +152,7 @@ impl Mind<'_> {
     }
 
     /// The child a* that maximises C~ + V, the first of equals, and its V.
-    pub(super) fn best_child(&self, now: &mut Situation, node: usize) -> (usize, f32) {
+    pub(super) fn best_child(&self, now: &mut StateValues, node: usize) -> (usize, f32) {
         let mut best = (node, 0.0);
         let mut highest = f32::NEG_INFINITY;
         for &child in self.plan.choices(node, now.state_type) {
@@ -166,7 +170,7 @@ impl Mind<'_> {
     #[inline]
     pub(super) fn completion(
         &self,
-        now: &mut Situation,
+        now: &mut StateValues,
         node: usize,
         child: usize,
         which: Completion,
