@@ -9,35 +9,72 @@ use serde::Deserialize;
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
-/// Why a file was not read.
+/// A file or folder that cannot be used, and why.
 #[derive(Debug, Error)]
-pub enum ReadError {
-    /// The operating system refused.
+#[error("{path}: {source}")]
+pub struct FileError {
+    /// The path, as it is shown.
+    pub path: String,
+    /// What is wrong.
+    pub source: FileProblem,
+}
+
+impl FileError {
+    /// The error of the file or folder at `path`.
+    pub fn new(path: impl AsRef<Path>, problem: impl Into<FileProblem>) -> Self {
+        Self {
+            path: path.as_ref().display().to_string(),
+            source: problem.into(),
+        }
+    }
+}
+
+/// What is wrong with a file or folder.
+#[derive(Debug, Error)]
+pub enum FileProblem {
+    /// The operating system refuses.
+    #[error("{0}")]
+    Refused(#[from] io::Error),
+    /// The operating system refuses to read it.
     #[error("cannot be read: {0}")]
-    Io(#[from] io::Error),
-    /// Larger than anything this program writes.
+    Unreadable(#[source] io::Error),
+    /// It is larger than anything that this program writes.
     #[error("is larger than allowed: more than {limit} bytes")]
     TooLarge {
         /// The limit in bytes.
         limit: u64,
     },
-    /// Not text.
+    /// It is not text.
     #[error("is not text: byte {at} is not UTF-8")]
     NotText {
-        /// Offset of the first byte that is no UTF-8.
+        /// Offset of the first byte that is not UTF-8.
         at: usize,
     },
+    /// It is not the JSON that it should be.
+    #[error(transparent)]
+    Json(#[from] JsonError),
+    /// It says what it may not say. The text names the place, what was found there and
+    /// what is allowed.
+    #[error("{0}")]
+    Wrong(String),
 }
 
-/// Reads a file of at most `limit` bytes; no more than that is ever taken into memory.
+impl From<String> for FileProblem {
+    fn from(message: String) -> Self {
+        Self::Wrong(message)
+    }
+}
+
+/// Reads a file of at most `limit` bytes, and never takes more into memory.
 ///
 /// # Errors
 /// When the file cannot be read or is larger.
-pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
+pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
+    let read = File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
+    read.map_err(|error| FileError::new(path, FileProblem::Unreadable(error)))?;
     if bytes.len() as u64 > limit {
-        return Err(ReadError::TooLarge { limit });
+        return Err(FileError::new(path, FileProblem::TooLarge { limit }));
     }
     Ok(bytes)
 }
@@ -46,9 +83,10 @@ pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
 ///
 /// # Errors
 /// When the file cannot be read, is larger, or is not UTF-8.
-pub fn read_text(path: &Path, limit: u64) -> Result<String, ReadError> {
-    String::from_utf8(read_bytes(path, limit)?).map_err(|error| ReadError::NotText {
-        at: error.utf8_error().valid_up_to(),
+pub fn read_text(path: &Path, limit: u64) -> Result<String, FileError> {
+    String::from_utf8(read_bytes(path, limit)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        FileError::new(path, FileProblem::NotText { at })
     })
 }
 

@@ -9,7 +9,7 @@ use toml::Spanned;
 
 use super::keys::{Action, Collision, Key, KeyError, KeyMap};
 use super::look::{Paint, StyleError, Theme};
-use crate::files::{ReadError, read_text};
+use crate::files::{FileError, read_text};
 
 /// Largest file that is read, in bytes.
 const MAX_BYTES: u64 = 1 << 20;
@@ -38,22 +38,9 @@ impl Default for Config {
 /// Why a file of keys and themes cannot be used.
 #[derive(Debug, Error)]
 pub enum ConfigError {
-    /// It cannot be read.
-    #[error("{path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// Why.
-        source: ReadError,
-    },
-    /// Something in it is not what it should be.
-    #[error("{path}: {message}")]
-    Syntax {
-        /// The file.
-        path: String,
-        /// What, and where.
-        message: String,
-    },
+    /// It cannot be read, or is not what it should be.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A value in it is not allowed.
     #[error("{path}, line {line}: {problem}")]
     Value {
@@ -157,10 +144,7 @@ impl Config {
     /// When it cannot be read, names what does not exist, or gives a key two meanings.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
         let shown = path.display().to_string();
-        let text = read_text(path, MAX_BYTES).map_err(|source| ConfigError::Read {
-            path: shown.clone(),
-            source,
-        })?;
+        let text = read_text(path, MAX_BYTES)?;
         Self::read(&text, &shown)
     }
 
@@ -169,10 +153,8 @@ impl Config {
     /// # Errors
     /// When it names what does not exist or gives a key two meanings.
     pub fn read(text: &str, path: &str) -> Result<Self, ConfigError> {
-        let file: File = toml::from_str(text).map_err(|error| ConfigError::Syntax {
-            path: path.to_owned(),
-            message: error.to_string().trim_end().to_owned(),
-        })?;
+        let file: File = toml::from_str(text)
+            .map_err(|error| FileError::new(path, error.to_string().trim_end().to_owned()))?;
         file.apply().map_err(|(at, problem)| ConfigError::Value {
             path: path.to_owned(),
             line: line_of(text, at),

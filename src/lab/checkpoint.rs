@@ -158,7 +158,8 @@ impl Checkpoint {
         if !path.exists() {
             return Ok(None);
         }
-        Self::from_text(&read_text(path, MAX_CHECKPOINT_BYTES)?).map(Some)
+        let text = read_text(path, MAX_CHECKPOINT_BYTES).map_err(|error| error.source)?;
+        Self::from_text(&text).map(Some)
     }
 
     /// Reads the text of a file. Version and checksum are checked before anything else.

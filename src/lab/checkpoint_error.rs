@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::files::{JsonError, ReadError};
+use crate::files::{FileProblem, JsonError};
 use crate::scenario::ScenarioError;
 
 /// Version of the checkpoint format.
@@ -13,7 +13,7 @@ pub const CHECKPOINT_FORMAT: u32 = 1;
 pub enum CheckpointError {
     /// Its file cannot be read.
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(#[from] FileProblem),
     /// It is not the JSON of a checkpoint.
     #[error(transparent)]
     Syntax(#[from] JsonError),

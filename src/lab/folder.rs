@@ -12,7 +12,7 @@ use tempfile::TempDir;
 use super::folder_error::{FolderError, Occupied};
 use super::manifest::{MANIFEST_FORMAT, Manifest};
 use crate::files::{
-    WRITING, clean, parse_json, read_text, stated_format, sync_folder, without_path,
+    FileError, WRITING, clean, parse_json, read_text, stated_format, sync_folder, without_path,
     write_atomically,
 };
 use crate::scenario::MAX_FILE_BYTES;
@@ -238,26 +238,19 @@ impl RunFolder {
     /// When it is missing or is not the `run.json` of a valid run.
     pub fn read_manifest(folder: &Path) -> Result<Manifest, FolderError> {
         let file = folder.join("run.json");
-        let path = file.display().to_string();
         if !file.is_file() {
             return Err(FolderError::NotARun {
                 path: folder.display().to_string(),
             });
         }
-        let text = read_text(&file, 4 * MAX_FILE_BYTES).map_err(|source| FolderError::Read {
-            path: path.clone(),
-            source,
-        })?;
-        let wrong = |message| FolderError::Manifest {
-            path: path.clone(),
-            message,
-        };
+        let text = read_text(&file, 4 * MAX_FILE_BYTES)?;
+        let wrong = |message: String| FileError::new(&file, message);
         if let Some(found) = stated_format(&text).filter(|&format| format != MANIFEST_FORMAT) {
-            return Err(wrong(format!(
-                "format: found {found}; allowed: {MANIFEST_FORMAT}"
-            )));
+            let message = format!("format: found {found}; allowed: {MANIFEST_FORMAT}");
+            return Err(wrong(message).into());
         }
-        let mut manifest: Manifest = parse_json(&text).map_err(|error| wrong(error.to_string()))?;
+        let mut manifest: Manifest =
+            parse_json(&text).map_err(|error| FileError::new(&file, error))?;
         manifest.scenario = manifest
             .scenario
             .checked("scenario")
@@ -306,9 +299,6 @@ fn occupied(path: &Path, wanted: &Manifest) -> FolderError {
     }
 }
 
-fn io_error(path: &Path, source: io::Error) -> FolderError {
-    FolderError::Io {
-        path: path.display().to_string(),
-        source,
-    }
+fn io_error(path: &Path, error: io::Error) -> FolderError {
+    FileError::new(path, error).into()
 }

@@ -1,13 +1,12 @@
 //! Why a run folder cannot be used.
 
 use std::fmt;
-use std::io;
 
 use thiserror::Error;
 
 use super::difference::{Difference, differences};
 use super::manifest::Manifest;
-use crate::files::ReadError;
+use crate::files::FileError;
 
 /// Why a run folder cannot be used.
 #[derive(Debug, Error)]
@@ -32,30 +31,9 @@ pub enum FolderError {
         /// The folder.
         path: String,
     },
-    /// The operating system refused.
-    #[error("{path}: {source}")]
-    Io {
-        /// The file or folder.
-        path: String,
-        /// Why.
-        source: io::Error,
-    },
-    /// `run.json` cannot be read.
-    #[error("{path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// Why.
-        source: ReadError,
-    },
-    /// `run.json` is not what it should be.
-    #[error("{path}: {message}")]
-    Manifest {
-        /// The file.
-        path: String,
-        /// What is wrong, and where.
-        message: String,
-    },
+    /// The operating system refuses, or `run.json` is not what it should be.
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// What is where a new run was to be.

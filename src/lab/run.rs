@@ -17,6 +17,7 @@ use super::run_error::RunError;
 use super::work::Work;
 use super::worlds::{WorldTask, with_world};
 use crate::evolution::{Experiment, Workers};
+use crate::files::FileError;
 use crate::scenario::{PrimitiveLearning, Scenario};
 use crate::worlds::World;
 
@@ -112,10 +113,7 @@ pub fn resume(
     if let Some(checkpoint) = &checkpoint {
         checkpoint
             .check_origin(&manifest.scenario, manifest.seed)
-            .map_err(|message| {
-                let path = folder.manifest().display().to_string();
-                FolderError::Manifest { path, message }
-            })?;
+            .map_err(|message| FolderError::from(FileError::new(folder.manifest(), message)))?;
     }
     // The limit is that of run.json: a run that dies before its first checkpoint with a
     // new limit must not forget it.

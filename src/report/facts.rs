@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::single::{SingleError, check_evaluation, check_origin, fresh, summary};
 use super::study::{RunId, Study};
 use crate::evolution::{Experiment, GenerationRecord, RankedRecord, TreeError, read_tree};
+use crate::files::FileError;
 use crate::hierarchy::{canonical, without_repeats};
 use crate::lab::{Event, RunError, WorldTask, read_events, with_world};
 use crate::worlds::World;
@@ -98,14 +99,12 @@ impl Facts {
             })
             .collect();
         let best = records.last().and_then(|record| record.individuals.first());
-        let best = best.ok_or_else(|| SingleError::Misfit {
-            path: file.display().to_string(),
-            message: String::from("holds no generation"),
-        })?;
+        let best =
+            best.ok_or_else(|| FileError::new(&file, String::from("holds no generation")))?;
         let winner = with_world(scenario, OfTree(best))?;
-        let winner = winner.map_err(|error| SingleError::Misfit {
-            path: file.display().to_string(),
-            message: format!("the best hierarchy: {error}"),
+        let winner = winner.map_err(|error| {
+            let message = format!("the best hierarchy: {error}");
+            FileError::new(&file, message)
         })?;
         Ok(Some(Self {
             run: *run,

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::single::{FRESH, SingleError, fresh, summary};
 use super::study::{RunId, Study, StudyError};
-use crate::files::sync_folder;
+use crate::files::{FileError, sync_folder};
 use crate::lab::{FolderError, RunFolder};
 
 /// Files of a run that follow from the plan alone.
@@ -52,13 +52,8 @@ pub enum MergeError {
         file: &'static str,
     },
     /// The operating system refused.
-    #[error("{path}: {source}")]
-    Io {
-        /// The file or folder.
-        path: String,
-        /// Why.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// A folder that holds some of a run.
@@ -225,9 +220,6 @@ fn copy(from: &Path, to: &Path) -> Result<(), MergeError> {
     Ok(())
 }
 
-fn refused(path: &Path, source: io::Error) -> MergeError {
-    MergeError::Io {
-        path: path.display().to_string(),
-        source,
-    }
+fn refused(path: &Path, error: io::Error) -> MergeError {
+    FileError::new(path, error).into()
 }

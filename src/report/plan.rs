@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::arm::{Arm, Base};
 use super::numbers::Numbers;
 use super::plan_error::PlanError;
-use crate::files::{parse_json, read_text, stated_format};
+use crate::files::{FileError, parse_json, read_text, stated_format};
 use crate::scenario::{EMBEDDED_PLANS, Scenario, ScenarioError};
 
 /// Version of the plan format.
@@ -99,10 +99,7 @@ impl Plan {
             }
         };
         let file = path.display().to_string();
-        let text = read_text(&path, MAX_PLAN_BYTES).map_err(|source| PlanError::Read {
-            file: file.clone(),
-            source,
-        })?;
+        let text = read_text(&path, MAX_PLAN_BYTES)?;
         Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
     }
 
@@ -357,10 +354,7 @@ enum ArmEntry {
 impl PlanFile {
     /// Parses plan `text`; `file` names it in errors.
     fn parse(text: &str, file: &str) -> Result<Self, PlanError> {
-        parse_json(text).map_err(|source| PlanError::Syntax {
-            file: file.to_owned(),
-            source,
-        })
+        Ok(parse_json(text).map_err(|error| FileError::new(file, error))?)
     }
 
     /// The plan with its scenarios and arms written out; `file` names it in errors, scenario

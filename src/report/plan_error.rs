@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::arm::ArmError;
-use crate::files::{JsonError, ReadError};
+use crate::files::FileError;
 use crate::scenario::ScenarioError;
 
 /// Why a plan cannot be used.
@@ -17,22 +17,9 @@ pub enum PlanError {
         /// The names there are.
         allowed: String,
     },
-    /// The file cannot be read.
-    #[error("{file}: {source}")]
-    Read {
-        /// The file.
-        file: String,
-        /// Why not.
-        source: ReadError,
-    },
-    /// The text is not JSON of a plan.
-    #[error("{file}: {source}")]
-    Syntax {
-        /// The file.
-        file: String,
-        /// Where, and what is wrong there.
-        source: JsonError,
-    },
+    /// The file cannot be read, or is not the JSON of a plan.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// It says what cannot be.
     #[error("{file}: at {place}: {message}")]
     Invalid {

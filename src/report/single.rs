@@ -11,7 +11,7 @@ use super::arm::{Arm, ArmError, Base};
 use super::controls::StudyControls;
 use super::study::{RunId, Study};
 use crate::evolution::{Evolution, Experiment, TreeError, Workers, read_tree};
-use crate::files::{ReadError, parse_json, read_text, write_atomically};
+use crate::files::{FileError, parse_json, read_text, write_atomically};
 use crate::lab::{
     Evaluation, FolderError, Keep, Manifest, Outcome, Protocol, RunError, RunFolder, RunOptions,
     SetupError, WorldTask, evaluate, resume, start, with_world,
@@ -75,30 +75,9 @@ pub enum SingleError {
         /// What should be there.
         expected: String,
     },
-    /// A file of the run cannot be read.
-    #[error("{path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// Why.
-        source: ReadError,
-    },
-    /// A file of the run is not what it should be.
-    #[error("{path}: {message}")]
-    Misfit {
-        /// The file.
-        path: String,
-        /// What was found and what is allowed.
-        message: String,
-    },
-    /// A file of the run cannot be written.
-    #[error("{path}: {source}")]
-    Write {
-        /// The file.
-        path: String,
-        /// Why.
-        source: std::io::Error,
-    },
+    /// A file of the run cannot be read or written, or is not what it should be.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The operating system gives no threads.
     #[error("cannot start threads: {0}")]
     Threads(String),
@@ -215,10 +194,7 @@ impl Single<'_> {
         if let Some(fresh) = fresh(folder)? {
             return Ok(fresh);
         }
-        let misfit = |message| SingleError::Misfit {
-            path: folder.join(SUMMARY).display().to_string(),
-            message,
-        };
+        let misfit = |message: String| FileError::new(folder.join(SUMMARY), message);
         let best = summary(folder)?.and_then(|outcome| outcome.best);
         let tree = best.map(|best| best.tree);
         let tree = tree.ok_or_else(|| misfit(String::from("names no best individual")))?;
@@ -237,7 +213,7 @@ impl Single<'_> {
         };
         let evaluation = with_world(scenario, task)?.map_err(|error| match error {
             Unevaluated::Stopped => SingleError::Stopped(Stopped),
-            Unevaluated::Tree(error) => misfit(format!("best.tree: {error}")),
+            Unevaluated::Tree(error) => misfit(format!("best.tree: {error}")).into(),
             Unevaluated::Threads(error) => SingleError::Threads(error),
         })?;
         let fresh = Fresh {
@@ -249,10 +225,7 @@ impl Single<'_> {
         let written = serde_json::to_vec(&fresh)
             .map_err(std::io::Error::from)
             .and_then(|bytes| write_atomically(&path, &[bytes.as_slice(), b"\n"].concat()));
-        written.map_err(|source| SingleError::Write {
-            path: path.display().to_string(),
-            source,
-        })?;
+        written.map_err(|error| FileError::new(&path, error))?;
         Ok(fresh)
     }
 }
@@ -316,10 +289,8 @@ pub(super) fn check_evaluation(
         }
         None => return Ok(()),
     };
-    Err(SingleError::Misfit {
-        path: study.run_folder(run).join(FRESH).display().to_string(),
-        message: format!("{message}; remove the file to have the evaluation done again"),
-    })
+    let message = format!("{message}; remove the file to have the evaluation done again");
+    Err(FileError::new(study.run_folder(run).join(FRESH), message).into())
 }
 
 /// The seed of the evaluation of a run's winner.
@@ -343,10 +314,10 @@ pub(super) fn fresh(folder: &Path) -> Result<Option<Fresh>, SingleError> {
     let path = folder.join(FRESH);
     let fresh: Option<Fresh> = read(path.clone())?;
     match &fresh {
-        Some(found) if found.format != FRESH_FORMAT => Err(SingleError::Misfit {
-            path: path.display().to_string(),
-            message: format!("format: found {}; allowed: {FRESH_FORMAT}", found.format),
-        }),
+        Some(found) if found.format != FRESH_FORMAT => {
+            let message = format!("format: found {}; allowed: {FRESH_FORMAT}", found.format);
+            Err(FileError::new(path, message).into())
+        }
         _ => Ok(fresh),
     }
 }
@@ -356,16 +327,8 @@ fn read<T: for<'t> Deserialize<'t>>(path: PathBuf) -> Result<Option<T>, SingleEr
     if !fs::exists(&path).unwrap_or(true) {
         return Ok(None);
     }
-    let shown = path.display().to_string();
-    let text = read_text(&path, MAX_RESULT_BYTES).map_err(|source| SingleError::Read {
-        path: shown.clone(),
-        source,
-    })?;
-    let value = parse_json(&text);
-    value.map(Some).map_err(|error| SingleError::Misfit {
-        path: shown,
-        message: error.to_string(),
-    })
+    let value = parse_json(&read_text(&path, MAX_RESULT_BYTES)?);
+    Ok(Some(value.map_err(|error| FileError::new(path, error))?))
 }
 
 /// How long an evolution takes, computed without a folder.

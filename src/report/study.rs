@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::arm::Arm;
 use super::plan::{PLAN_FILE, Plan};
 use super::plan_error::PlanError;
-use crate::files::{read_text, write_atomically};
+use crate::files::{FileError, read_text, write_atomically};
 use crate::scenario::Scenario;
 
 /// A study: a plan and the folder of its runs.
@@ -72,13 +72,8 @@ pub enum StudyError {
         allowed: String,
     },
     /// The operating system refused.
-    #[error("{path}: {source}")]
-    Io {
-        /// The file or folder.
-        path: String,
-        /// Why.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 impl Study {
@@ -88,10 +83,7 @@ impl Study {
     /// When the folder holds the study of another plan, or the operating system refuses.
     pub fn create(plan: Plan, folder: &Path) -> Result<Self, StudyError> {
         let file = folder.join(PLAN_FILE);
-        let refused = |source| StudyError::Io {
-            path: file.display().to_string(),
-            source,
-        };
+        let refused = |error: io::Error| FileError::new(&file, error);
         if file.exists() {
             let study = Self::open(folder)?;
             return match study.plan == plan {
@@ -128,11 +120,7 @@ impl Study {
             });
         }
         let name = file.display().to_string();
-        let text =
-            read_text(&file, super::plan::MAX_PLAN_BYTES).map_err(|source| PlanError::Read {
-                file: name.clone(),
-                source,
-            })?;
+        let text = read_text(&file, super::plan::MAX_PLAN_BYTES)?;
         Ok(Self {
             plan: Plan::parse(&text, &name, folder)?,
             folder: folder.to_owned(),

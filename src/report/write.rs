@@ -12,7 +12,7 @@ use super::study::{Study, StudyError};
 use super::tables::{
     claims_table, comparisons_table, generations_table, metrics_table, runs_table,
 };
-use crate::files::write_atomically;
+use crate::files::{FileError, write_atomically};
 
 /// A report that was written.
 #[derive(Clone, Debug)]
@@ -110,11 +110,6 @@ pub fn write_report(study: &Study) -> Result<Written, ReportError> {
 fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, StudyError> {
     let path = folder.join(name);
     let written = fs::create_dir_all(folder).and_then(|()| write_atomically(&path, bytes));
-    match written {
-        Ok(()) => Ok(path),
-        Err(source) => Err(StudyError::Io {
-            path: path.display().to_string(),
-            source,
-        }),
-    }
+    written.map_err(|error| FileError::new(&path, error))?;
+    Ok(path)
 }

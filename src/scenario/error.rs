@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::files::{JsonError, ReadError};
+use crate::files::FileError;
 use crate::rules::Problem;
 
 /// Why a scenario cannot be used.
@@ -17,22 +17,9 @@ pub enum ScenarioError {
         /// The name asked for.
         name: String,
     },
-    /// The file cannot be read, or is larger than a scenario can be.
-    #[error("{file}: {source}")]
-    Read {
-        /// The file.
-        file: String,
-        /// Why not.
-        source: ReadError,
-    },
-    /// The text is not JSON of the scenario model.
-    #[error("{file}: {source}")]
-    Syntax {
-        /// The file.
-        file: String,
-        /// Where, and why not.
-        source: JsonError,
-    },
+    /// The file cannot be read, or is not the JSON of a scenario.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The scenario breaks rules.
     #[error("{file}: {}", list(.problems))]
     Invalid {

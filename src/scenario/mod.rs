@@ -10,7 +10,7 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::files::{parse_json, read_text, stated_format};
+use crate::files::{FileError, parse_json, read_text, stated_format};
 use crate::rules::Problem;
 use crate::worlds::WorldSettings;
 
@@ -82,11 +82,7 @@ impl Scenario {
     /// As [`Scenario::load`].
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
-        let text = read_text(path, MAX_FILE_BYTES).map_err(|source| ScenarioError::Read {
-            file: file.clone(),
-            source,
-        })?;
-        Self::parse(&text, &file)
+        Self::parse(&read_text(path, MAX_FILE_BYTES)?, &file)
     }
 
     /// Parses and checks scenario `text`; `file` names it in errors.
@@ -100,10 +96,7 @@ impl Scenario {
                 problems: vec![Problem::new("format", format, FORMAT)],
             });
         }
-        let parsed: Self = parse_json(text).map_err(|source| ScenarioError::Syntax {
-            file: file.to_owned(),
-            source,
-        })?;
+        let parsed: Self = parse_json(text).map_err(|error| FileError::new(file, error))?;
         parsed.checked(file)
     }
 
