@@ -8,7 +8,7 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use maxq_lab::dashboard::keys::KeyMap;
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
-use maxq_lab::dashboard::{App, Desk, Input, Mode, Still, ViewId};
+use maxq_lab::dashboard::{App, Input, Mode, OffscreenDashboard, ViewContext, ViewId};
 use maxq_lab::hierarchy::Glyphs;
 use maxq_lab::lab::specimen::{Archive, bench};
 use maxq_lab::lab::{Recording, RunOptions, start};
@@ -31,23 +31,23 @@ fn frames(criterion: &mut Criterion) {
     let bench = bench(scenario, 1).unwrap();
     let look = Look::new(Theme::all(), "dark", Signs::of(Glyphs::Unicode));
     let folder_name = String::from("run");
-    let desk = Desk::new(bench, folder_name, Mode::Replay, look, KeyMap::default());
-    let app = App::new(desk);
-    let mut still = Still::new(app, Archive::new(bench, &folder, None));
-    still.update(Input::Resize(200, 60));
+    let context = ViewContext::new(bench, folder_name, Mode::Replay, look, KeyMap::default());
+    let app = App::new(context);
+    let mut dashboard = OffscreenDashboard::new(app, Archive::new(bench, &folder, None));
+    dashboard.update(Input::Resize(200, 60));
     for event in Recording::read(&folder).unwrap().events {
-        still.update(Input::Event(Box::new(event)));
+        dashboard.update(Input::Event(Box::new(event)));
     }
     for view in ViewId::all() {
-        still.open(view);
+        dashboard.open(view);
         for _ in 0..50 {
-            still.update(Input::Tick(Duration::from_millis(100)));
+            dashboard.update(Input::Tick(Duration::from_millis(100)));
         }
         let mut buffer = Buffer::empty(Rect::new(0, 0, 200, 60));
         criterion.bench_function(&format!("{} at 200x60", view.name()), |bencher| {
             bencher.iter(|| {
                 buffer.reset();
-                still.app().draw_on(black_box(&mut buffer));
+                dashboard.app().draw_on(black_box(&mut buffer));
             });
         });
     }

@@ -246,3 +246,67 @@ fn every_folder_of_worlds_is_a_world() {
         assert!(list.contains(&format!("pub mod {world};")), "{world}");
     }
 }
+
+/// The floors of the dashboard, from the ground up: a file may import from its own floor and
+/// from the floors before it.
+const FLOORS: [&str; 12] = [
+    "look", "view_id", "keys", "panel", "context", "scene", "views", "chrome", "app", "runs",
+    "terminal", "session",
+];
+
+fn floor(name: &str) -> Option<usize> {
+    FLOORS.iter().position(|floor| *floor == name)
+}
+
+/// Names that stand directly below `dashboard::` in a line of code, in a file whose module is
+/// `depth` levels below `dashboard`.
+fn floors_named(code: &str, depth: usize) -> Vec<&str> {
+    let name = |rest| str::split(rest, |c: char| !c.is_alphanumeric() && c != '_').next();
+    let absolute = code.split("crate::dashboard::").skip(1).filter_map(name);
+    let climb = "super::".repeat(depth);
+    let starts = code.match_indices(&climb).map(|(at, _)| at);
+    let starts = starts.filter(|at| !code[..*at].ends_with("super::"));
+    let relative = starts.filter_map(|at| name(&code[at + climb.len()..]));
+    absolute
+        .chain(relative.filter(|name| *name != "super"))
+        .collect()
+}
+
+#[test]
+fn the_dashboard_is_built_floor_upon_floor() {
+    let mut wrong = Vec::new();
+    for source in sources() {
+        let Ok(path) = source.path.strip_prefix("dashboard") else {
+            continue;
+        };
+        if path == Path::new("mod.rs") {
+            continue;
+        }
+        let folded = path.file_name().unwrap() == "mod.rs";
+        let depth = path.components().count() - usize::from(folded);
+        let first = Path::new(path.components().next().unwrap().as_os_str());
+        let own = first.file_stem().unwrap().to_str().unwrap();
+        let own = floor(own).unwrap_or_else(|| panic!("{own} is on no floor"));
+        for (number, code) in source.code_without_tests() {
+            for named in floors_named(code, depth) {
+                if floor(named).is_none_or(|floor| floor > own) {
+                    let place = source.path.display();
+                    wrong.push(format!("{place}:{number}: {} names {named:?}", FLOORS[own]));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_check_of_floors_sees_what_it_should() {
+    let code = "use crate::dashboard::look::{Look, Paint};";
+    assert_eq!(floors_named(code, 1), ["look"]);
+    assert_eq!(floors_named("use super::keys::Key;", 1), ["keys"]);
+    assert_eq!(floors_named("use super::row::RunRow;", 2), [""; 0]);
+    assert_eq!(floors_named("use super::super::keys::Key;", 2), ["keys"]);
+    // A list hides the floors, so it is not allowed: it names the floor "".
+    assert_eq!(floors_named("use super::{App, Input};", 1), [""]);
+    assert_eq!(floor(""), None);
+}

@@ -13,7 +13,7 @@ use crate::dashboard::keys::KeyMap;
 use crate::dashboard::look::{Look, Signs, Theme};
 use crate::dashboard::session::{Exit, Session, Source};
 use crate::dashboard::terminal::{Terminal, is_terminal};
-use crate::dashboard::{App, Config, Desk, Mode, RunsTable};
+use crate::dashboard::{App, Config, Mode, RunsTable, ViewContext};
 use crate::hierarchy::Glyphs;
 use crate::lab::specimen::{Archive, Bench, Start};
 
@@ -140,7 +140,7 @@ impl DashboardSettings {
         };
         let name = folder.display().to_string();
         let (look, keys) = (self.look.clone(), self.keys.clone());
-        let app = App::new(Desk::new(what, name, mode, look, keys)).beginning_at(self.start);
+        let app = App::new(ViewContext::new(what, name, mode, look, keys)).starting_at(self.start);
         let archive = Archive::new(what, folder, controls);
         let session = Session::new(app, archive, source, folder, terminal, self.fps)?;
         Ok(session)

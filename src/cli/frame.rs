@@ -9,7 +9,9 @@ use super::args::StartArg;
 use super::dashboard::AppearanceArgs;
 use super::output::{self, CommandResult};
 use crate::dashboard::keys::Key;
-use crate::dashboard::{App, Desk, FrameFormat, Input, Mode, Still, ViewId, render};
+use crate::dashboard::{
+    App, FrameFormat, Input, Mode, OffscreenDashboard, ViewContext, ViewId, render,
+};
 use crate::lab::Recording;
 use crate::lab::specimen::{Archive, bench};
 
@@ -111,24 +113,25 @@ pub(super) fn main(args: &Args) -> CommandResult {
     let bench = bench(manifest.scenario, manifest.seed)?;
     let folder = args.run_dir.display().to_string();
     let start = args.start.read(bench)?;
-    let app = App::new(Desk::new(bench, folder, Mode::Replay, look, key_map)).beginning_at(start);
-    let mut still = Still::new(app, Archive::new(bench, &args.run_dir, None));
+    let app =
+        App::new(ViewContext::new(bench, folder, Mode::Replay, look, key_map)).starting_at(start);
+    let mut dashboard = OffscreenDashboard::new(app, Archive::new(bench, &args.run_dir, None));
     let Size(columns, rows) = args.size;
-    still.update(Input::Resize(columns, rows));
+    dashboard.update(Input::Resize(columns, rows));
     for event in recording.events {
-        still.update(Input::Event(Box::new(event)));
+        dashboard.update(Input::Event(Box::new(event)));
     }
-    still.open(args.view);
+    dashboard.open(args.view);
     if let Some(generation) = args.generation {
-        still.travel_to(generation);
+        dashboard.travel_to(generation);
     }
     for _ in 0..(args.play / TICK.as_secs_f64()).round() as u64 {
-        still.update(Input::Tick(TICK));
+        dashboard.update(Input::Tick(TICK));
     }
     for key in keys {
-        still.update(Input::Key(key));
+        dashboard.update(Input::Key(key));
     }
-    let frame = render(&still.app().frame(), args.format);
+    let frame = render(&dashboard.app().frame(), args.format);
     output::raw(frame.as_bytes())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -12,8 +12,8 @@
 //! | --- | --- |
 //! | `app` | the state and its two functions |
 //! | `model` | the fold over the events of the run |
-//! | `desk` | what the person has chosen to look at; every view reads it |
-//! | `stage` | the rollout of the individual that is looked at |
+//! | `context` | what the person has chosen to look at; every view reads it |
+//! | `player` | the rollout of the individual that is looked at |
 //! | `keys` | actions, keys, and which key does what: one list for input, hints and help |
 //! | `mouse`, `clicks` | what the mouse tells; what clicks and the wheel do |
 //! | `hints` | which actions the last line names |
@@ -30,38 +30,22 @@
 //! that implements `View`.
 
 mod app;
-mod clicks;
-mod config;
-mod desk;
-mod export;
-mod header;
-mod hints;
-mod input;
+mod chrome;
+mod context;
 pub mod keys;
 pub mod look;
-mod model;
-mod mouse;
-mod overlay;
-mod pace;
 mod panel;
 mod runs;
 mod scene;
 pub mod session;
-mod stage;
-mod steering;
-mod still;
 pub mod terminal;
 mod view_id;
 mod views;
 
-pub use app::App;
-pub use config::{Config, ConfigError};
-pub use desk::{Chosen, Desk, Mode, Time};
-pub use export::{FrameFormat, render};
-pub use input::{Effect, Export, Input};
-pub use model::{Model, Progress};
-pub use mouse::{Gesture, Mouse};
+pub use app::{App, FrameFormat, OffscreenDashboard, render};
+pub use context::{
+    Chosen, Config, ConfigError, Effect, Export, Gesture, Input, Mode, Mouse, Progress,
+    RolloutPlayer, RunHistory, SPEEDS, ShownGeneration, Subject, ViewContext,
+};
 pub use runs::{RunRow, RunsEffect, RunsNews, RunsTable, Standing, Work};
-pub use stage::{SPEEDS, Stage, Subject};
-pub use still::Still;
 pub use view_id::ViewId;

@@ -110,19 +110,19 @@ fn the_steps_of_an_earlier_trial_are_below_its_number() {
 fn the_trail_is_that_of_the_step_shown() {
     let mut screen = screen();
     screen.press("t . . . .");
-    let stage = &screen.0.app().desk().stage;
-    let whole = stage.trail(0);
+    let player = &screen.0.app().context().player;
+    let whole = player.trail(0);
     for back in 0..4 {
-        let (trail, step) = (stage.trail(back), stage.trace(back).unwrap());
+        let (trail, step) = (player.trail(back), player.trace(back).unwrap());
         assert_eq!(trail.len(), step.step as usize + 1);
         assert_eq!(trail[..], whole[..trail.len()]);
         assert_eq!(trail.last(), Some(&step.after.at));
     }
     // A trial that is over has left what was recorded of it.
     screen.press("N .");
-    let stage = &screen.0.app().desk().stage;
-    assert_eq!(stage.trail(0).len(), 2);
-    assert_eq!(stage.trail(1).last(), whole.last());
+    let player = &screen.0.app().context().player;
+    assert_eq!(player.trail(0).len(), 2);
+    assert_eq!(player.trail(1).last(), whole.last());
 }
 
 /// Whoever travels through time reads of whom and when everything is.
@@ -130,7 +130,7 @@ fn the_trail_is_that_of_the_step_shown() {
 fn captions_name_individual_and_generation() {
     let mut screen = screen();
     screen.press("[ [ space");
-    let subject = screen.0.app().desk().stage.subject().unwrap();
+    let subject = screen.0.app().context().player.subject().unwrap();
     let (id, generation) = (subject.id, subject.generation);
     assert_eq!(generation, 4);
     for (keys, caption) in [
@@ -153,10 +153,10 @@ fn captions_name_individual_and_generation() {
 fn every_part_of_a_step_is_on_the_screen() {
     let mut screen = screen();
     screen.press("t .");
-    let trace = screen.0.app().desk().stage.trace(0).unwrap().clone();
+    let trace = screen.0.app().context().player.trace(0).unwrap().clone();
     let text = screen.text();
     let catalogue = foraging().bench.catalogue();
-    let tree = screen.0.app().desk().stage.tree().unwrap().clone();
+    let tree = screen.0.app().context().player.tree().unwrap().clone();
     let name = |node: usize| tree.subtask(node).name(catalogue);
     for level in &trace.explanation.levels {
         assert!(text.contains(name(level.node)));
@@ -199,9 +199,9 @@ fn the_map_turns_and_changes_its_load() {
 fn the_marked_individual_is_what_others_are_compared_with() {
     let mut screen = screen();
     screen.press("6 j j j M");
-    let marked = screen.0.app().desk().selected().unwrap().id;
+    let marked = screen.0.app().context().selected().unwrap().id;
     screen.press("b c");
-    assert_eq!(screen.0.app().desk().rivals().unwrap()[1].id, marked);
+    assert_eq!(screen.0.app().context().rivals().unwrap()[1].id, marked);
     let text = screen.text();
     assert!(
         text.contains(&format!("individual {marked}, generation 6")),
@@ -210,8 +210,8 @@ fn the_marked_individual_is_what_others_are_compared_with() {
     assert!(text.contains("marked: rank"), "{text}");
     // Who is marked is not compared with himself.
     screen.press("j j j");
-    assert_eq!(screen.0.app().desk().selected().unwrap().id, marked);
-    assert_ne!(screen.0.app().desk().rivals().unwrap()[1].id, marked);
+    assert_eq!(screen.0.app().context().selected().unwrap().id, marked);
+    assert_ne!(screen.0.app().context().rivals().unwrap()[1].id, marked);
 }
 
 fn exported(screen: &mut Screen, keys: &str) -> String {

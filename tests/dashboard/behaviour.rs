@@ -1,7 +1,7 @@
 //! What keys do, and when there is something to draw.
 
 use maxq_lab::dashboard::keys::Action;
-use maxq_lab::dashboard::{Effect, Input, Mode, Time, ViewId};
+use maxq_lab::dashboard::{Effect, Input, Mode, ShownGeneration, ViewId};
 use maxq_lab::hierarchy::Glyphs::Unicode;
 use maxq_lab::lab::Event;
 
@@ -22,7 +22,7 @@ fn live() -> Screen {
 }
 
 fn generation(screen: &Screen) -> u64 {
-    screen.0.app().desk().shown().unwrap().generation
+    screen.0.app().context().shown().unwrap().generation
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn time_travel_goes_through_all_generations() {
     assert_eq!(generation(&screen), 6);
     screen.press("[ [");
     assert_eq!(generation(&screen), 4);
-    let subject = screen.0.app().desk().stage.subject().unwrap();
+    let subject = screen.0.app().context().player.subject().unwrap();
     assert_eq!(subject.generation, 4, "the rollout is of that time");
     assert!(screen.text().contains("PAST of 6"));
     screen.press("{");
@@ -108,8 +108,8 @@ fn time_travel_goes_through_all_generations() {
     assert_eq!(generation(&screen), 2);
     screen.wait(2.0);
     assert_eq!(
-        (generation(&screen), screen.0.app().desk().time()),
-        (6, Time::Latest)
+        (generation(&screen), screen.0.app().context().time()),
+        (6, ShownGeneration::Latest)
     );
 }
 
@@ -120,7 +120,10 @@ fn a_frozen_view_holds_while_evolution_goes_on() {
     screen.press("f");
     screen.tell(foraging().events[4].clone());
     assert_eq!(generation(&screen), 3);
-    assert_eq!(screen.0.app().desk().live().generations().len(), 4);
+    assert_eq!(
+        screen.0.app().context().live_history().generations().len(),
+        4
+    );
     screen.press("f");
     assert_eq!(generation(&screen), 4);
 }
@@ -132,15 +135,15 @@ fn arena_and_hierarchy_speak_of_one_individual() {
     let mut screen = live();
     screen.0.update(Input::Resize(120, 40));
     screen.press("space");
-    let subject = screen.0.app().desk().stage.subject().unwrap();
+    let subject = screen.0.app().context().player.subject().unwrap();
     for event in &foraging().events[4..] {
         screen.tell(event.clone());
         screen.wait(1.0);
     }
-    let desk = screen.0.app().desk();
-    assert_eq!(desk.stage.subject(), Some(subject));
-    let (generation, looked_at) = desk.looked_at().unwrap();
-    assert_eq!((generation, looked_at.id), (subject.generation, subject.id));
+    let context = screen.0.app().context();
+    assert_eq!(context.player.subject(), Some(subject));
+    let (generation, inspected) = context.inspected().unwrap();
+    assert_eq!((generation, inspected.id), (subject.generation, subject.id));
     let caption = format!("id {}, gen {}", subject.id, subject.generation);
     assert_eq!(
         screen.text().matches(&caption).count(),
@@ -156,7 +159,14 @@ fn two_are_compared_as_they_were_together() {
     let mut screen = live();
     screen.0.update(Input::Resize(120, 40));
     screen.press("space");
-    let generation = screen.0.app().desk().stage.subject().unwrap().generation;
+    let generation = screen
+        .0
+        .app()
+        .context()
+        .player
+        .subject()
+        .unwrap()
+        .generation;
     for event in &foraging().events[4..] {
         screen.tell(event.clone());
         screen.wait(1.0);
@@ -280,7 +290,7 @@ fn the_axis_of_generations_stays_for_a_while() {
 #[test]
 fn a_subtask_is_selected_in_the_hierarchy() {
     let mut screen = screen();
-    let tree = screen.0.app().desk().looked_at_tree().unwrap();
+    let tree = screen.0.app().context().inspected_tree().unwrap();
     screen.press("3 j");
     let subtask = foraging().bench.catalogue().subtask(tree.subtask(1));
     let about = format!("{}: {}", subtask.name, subtask.purpose);
@@ -290,23 +300,29 @@ fn a_subtask_is_selected_in_the_hierarchy() {
         screen.text()
     );
     screen.press("G");
-    assert_eq!(screen.0.app().desk().node_in(&tree), tree.nodes().len() - 1);
+    assert_eq!(
+        screen.0.app().context().node_in(&tree),
+        tree.nodes().len() - 1
+    );
     screen.press("k k enter");
     assert_eq!(screen.0.app().view(), ViewId::Inspector);
-    assert_eq!(screen.0.app().desk().node_in(&tree), tree.nodes().len() - 3);
+    assert_eq!(
+        screen.0.app().context().node_in(&tree),
+        tree.nodes().len() - 3
+    );
 }
 
 #[test]
 fn selecting_puts_an_individual_on_the_stage() {
     let mut screen = screen();
-    let best = screen.0.app().desk().stage.subject().unwrap();
+    let best = screen.0.app().context().player.subject().unwrap();
     screen.press("6 j 2");
-    let second = screen.0.app().desk().stage.subject().unwrap();
+    let second = screen.0.app().context().player.subject().unwrap();
     assert_ne!(best.id, second.id);
-    let desk = screen.0.app().desk();
-    assert_eq!(desk.shown().unwrap().individuals[1].id, second.id);
+    let context = screen.0.app().context();
+    assert_eq!(context.shown().unwrap().individuals[1].id, second.id);
     screen.press("b");
-    assert_eq!(screen.0.app().desk().stage.subject(), Some(best));
+    assert_eq!(screen.0.app().context().player.subject(), Some(best));
 }
 
 /// In a run that was opened from a table of runs, going back is what is named.

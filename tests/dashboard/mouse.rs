@@ -23,7 +23,7 @@ fn act(screen: &mut Screen, what: Gesture, wanted: &str) {
 }
 
 fn selected(screen: &Screen) -> usize {
-    screen.0.app().desk().selected().unwrap().rank
+    screen.0.app().context().selected().unwrap().rank
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn a_click_gives_a_panel_the_focus_and_a_second_opens_it() {
     act(&mut screen, Gesture::Click, "Fitness");
     let app = screen.0.app();
     assert_eq!(
-        (app.view(), app.desk().focus),
+        (app.view(), app.context().focus),
         (ViewId::Overview, ViewId::Fitness)
     );
     act(&mut screen, Gesture::Click, "Fitness");
@@ -43,7 +43,7 @@ fn a_click_gives_a_panel_the_focus_and_a_second_opens_it() {
 fn a_click_selects_an_individual_and_a_second_opens_it() {
     let mut screen = foraging().screen("dark", Unicode, (120, 40));
     for rank in [3, 2, 5] {
-        let id = screen.0.app().desk().shown().unwrap().individuals[rank - 1].id;
+        let id = screen.0.app().context().shown().unwrap().individuals[rank - 1].id;
         act(&mut screen, Gesture::Click, &format!("   {rank} {id:>5} "));
         assert_eq!(
             (selected(&screen), screen.0.app().view()),
@@ -68,7 +68,7 @@ fn a_click_selects_a_subtask_of_the_inspector() {
     for size in [(80, 24), (120, 40)] {
         let mut screen = foraging().screen("dark", Unicode, size);
         screen.press("i");
-        let tree = screen.0.app().desk().stage.tree().unwrap().clone();
+        let tree = screen.0.app().context().player.tree().unwrap().clone();
         let last = tree.subtask(tree.nodes().len() - 1);
         let name = last.name(foraging().bench.catalogue());
         act(&mut screen, Gesture::Click, &format!("└─ {name}"));
@@ -81,7 +81,7 @@ fn a_click_selects_a_subtask_of_the_inspector() {
 #[test]
 fn a_click_selects_a_subtask_and_a_second_takes_it_apart() {
     let mut screen = foraging().screen("dark", Unicode, (120, 40));
-    let tree = screen.0.app().desk().looked_at_tree().unwrap();
+    let tree = screen.0.app().context().inspected_tree().unwrap();
     let last = tree.nodes().len() - 1;
     let line = format!(
         "└─ {}",
@@ -92,10 +92,10 @@ fn a_click_selects_a_subtask_and_a_second_takes_it_apart() {
             .name
     );
     act(&mut screen, Gesture::Click, &line);
-    assert_eq!(screen.0.app().desk().node_in(&tree), last);
+    assert_eq!(screen.0.app().context().node_in(&tree), last);
     assert_eq!(screen.0.app().view(), ViewId::Overview);
     act(&mut screen, Gesture::WheelUp, &line);
-    assert_eq!(screen.0.app().desk().node_in(&tree), last - 1);
+    assert_eq!(screen.0.app().context().node_in(&tree), last - 1);
     act(&mut screen, Gesture::Click, &line);
     act(&mut screen, Gesture::Click, &line);
     assert_eq!(screen.0.app().view(), ViewId::Hierarchy);

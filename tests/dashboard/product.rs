@@ -259,11 +259,11 @@ fn every_frame(run: &Recorded) {
 fn back(screen: &mut Screen, state: State, view: ViewId) {
     screen.press("esc");
     screen.0.open(ViewId::Arena);
-    if !screen.0.app().desk().stage.halted() {
+    if !screen.0.app().context().player.halted() {
         screen.press("space");
     }
     screen.0.update(Input::Tick(Duration::from_secs(6)));
-    if screen.0.app().desk().frozen() != (state == State::Frozen) {
+    if screen.0.app().context().frozen() != (state == State::Frozen) {
         screen.press("f");
     }
     screen.press(">");

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use maxq_lab::dashboard::keys::KeyMap;
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
-use maxq_lab::dashboard::{App, Desk, Effect, Input, Mode, Still};
+use maxq_lab::dashboard::{App, Effect, Input, Mode, OffscreenDashboard, ViewContext};
 use maxq_lab::hierarchy::Glyphs;
 use maxq_lab::lab::specimen::{Archive, Bench, Start, bench};
 use maxq_lab::lab::{Event, Recording};
@@ -49,17 +49,23 @@ impl Recorded {
     }
 
     fn blank_from(&self, start: Option<Start>, mode: Mode, theme: &str, glyphs: Glyphs) -> Screen {
-        self.still(self.app(mode, theme, glyphs).beginning_at(start))
+        self.still(self.app(mode, theme, glyphs).starting_at(start))
     }
 
     fn app(&self, mode: Mode, theme: &str, glyphs: Glyphs) -> App {
         let look = Look::new(Theme::all(), theme, Signs::of(glyphs));
         let folder = format!("runs/{}-seed1", self.bench.scenario().name);
-        App::new(Desk::new(self.bench, folder, mode, look, KeyMap::default()))
+        App::new(ViewContext::new(
+            self.bench,
+            folder,
+            mode,
+            look,
+            KeyMap::default(),
+        ))
     }
 
     fn still(&self, app: App) -> Screen {
-        Screen(Still::new(
+        Screen(OffscreenDashboard::new(
             app,
             Archive::new(self.bench, &self.folder, None),
         ))
@@ -107,7 +113,7 @@ pub fn cells(name: &str) -> Recorded {
 }
 
 /// A dashboard on a screen.
-pub struct Screen(pub Still);
+pub struct Screen(pub OffscreenDashboard);
 
 impl Screen {
     /// The run tells something.

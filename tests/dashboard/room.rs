@@ -49,8 +49,8 @@ fn the_state_is_named_in_full() {
     for _ in 0..40 {
         screen.press("space . space");
         screen.wait(0.5);
-        let stage = &screen.0.app().desk().stage;
-        let rollout = stage.rollout().unwrap();
+        let player = &screen.0.app().context().player;
+        let rollout = player.rollout().unwrap();
         let number = rollout.snapshot().state_type.number();
         if rollout.status().ended.is_none() {
             let name = format!("{number} {}", names[number - 1].description);
@@ -68,8 +68,8 @@ fn lengths_of_trials_are_whole_or_left_out() {
         for _ in 0..30 {
             screen.wait(1.0);
             let arena = panel(&screen.text(), "Arena");
-            let stage = &screen.0.app().desk().stage;
-            let history = stage.rollout().unwrap().status().history.clone();
+            let player = &screen.0.app().context().player;
+            let history = player.rollout().unwrap().status().history.clone();
             let latest: Vec<_> = history
                 .iter()
                 .rev()
@@ -122,7 +122,7 @@ fn the_stepper_says_everything_in_little_room() {
 fn the_hierarchy_of_the_selected_individual_is_written_in_full() {
     let mut screen = foraging().screen("dark", Unicode, SMALL);
     screen.press("6 j j");
-    let selected = screen.0.app().desk().selected().unwrap();
+    let selected = screen.0.app().context().selected().unwrap();
     let whole = format!("{}: {}", selected.id, selected.tree);
     let population = panel(&screen.text(), "Population");
     assert!(population.contains(&whole), "{whole}: {population}");

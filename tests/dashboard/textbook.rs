@@ -110,8 +110,8 @@ fn values_and_greedy_actions_stand_in_the_cells() {
     let cells = screen
         .0
         .app()
-        .desk()
-        .stage
+        .context()
+        .player
         .rollout()
         .unwrap()
         .cells()
@@ -139,7 +139,7 @@ fn the_stepper_shows_the_cells_of_its_step() {
             .unwrap()
     };
     let values = |screen: &Screen, back: usize| {
-        let cells = screen.0.app().desk().stage.cells(back).unwrap();
+        let cells = screen.0.app().context().player.cells(back).unwrap();
         cells
             .cells
             .iter()

@@ -53,7 +53,7 @@ pub(super) fn show(
         match open(&study.run_folder(run), &dashboard, &mut terminal, signals) {
             Ok(Exit::Left | Exit::Detached) => {}
             Ok(exit) => return Ok(exit),
-            Err(Failure::Message(message)) => table.say(message),
+            Err(Failure::Message(message)) => table.show_message(message),
             Err(failure) => return Err(failure),
         }
     }

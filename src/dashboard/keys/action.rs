@@ -76,7 +76,7 @@ use Scope::{Everywhere, ExportMenu, In, Question};
 use ViewId as V;
 
 /// Views that show the rollout.
-const STAGES: &[ViewId] = &[V::Overview, V::Arena, V::Hierarchy, V::Stepper];
+const ROLLOUT_VIEWS: &[ViewId] = &[V::Overview, V::Arena, V::Hierarchy, V::Stepper];
 
 actions! {
     /// Show or hide this help.
@@ -170,20 +170,20 @@ actions! {
     Reverse = "reverse", In(&[V::Population]), ["S"], "reverse";
 
     /// Halt the rollout, or let it go on.
-    Halt = "halt", In(STAGES), ["space"], "halt";
+    Halt = "halt", In(ROLLOUT_VIEWS), ["space"], "halt";
     /// One time step of the rollout.
-    StepRollout = "step-rollout", In(STAGES), ["."], "time step";
+    StepRollout = "step-rollout", In(ROLLOUT_VIEWS), ["."], "time step";
     /// One recorded time step back.
     StepBack = "step-back", In(&[V::Stepper]), [","], "step back";
     /// The rollout faster.
-    Faster = "faster", In(STAGES), ["+", "="], "faster";
+    Faster = "faster", In(ROLLOUT_VIEWS), ["+", "="], "faster";
     /// The rollout slower.
-    Slower = "slower", In(STAGES), ["-"], "slower";
+    Slower = "slower", In(ROLLOUT_VIEWS), ["-"], "slower";
     /// A new rollout from another start.
-    Restart = "restart", In(STAGES), ["r"], "new rollout";
+    Restart = "restart", In(ROLLOUT_VIEWS), ["r"], "new rollout";
 
     /// Give this trial up and begin the next.
-    NextTrial = "next-trial", In(STAGES), ["N"], "next trial";
+    NextTrial = "next-trial", In(ROLLOUT_VIEWS), ["N"], "next trial";
 
     /// Keep the selected individual to compare others with.
     Mark = "mark", Everywhere, ["M"], "mark";

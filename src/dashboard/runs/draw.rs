@@ -7,11 +7,11 @@ use super::columns::{Column, Placed, place};
 use super::row::{RunRow, Standing};
 use super::table::RunsTable;
 use super::work::question;
-use crate::dashboard::header::{last_line, put_hints, put_message};
-use crate::dashboard::hints::ALWAYS;
+use crate::dashboard::chrome::header::{last_line, put_hints, put_message};
+use crate::dashboard::chrome::hints::ALWAYS;
+use crate::dashboard::chrome::overlay::{Line, line, plain, window};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, one_line, put, sparkline, width};
-use crate::dashboard::overlay::{Line, line, plain, window};
 use crate::dashboard::panel::{SMALLEST, body, panel, too_small};
 
 /// Actions of the hint bar, most useful first.

@@ -9,10 +9,10 @@ use ratatui::layout::{Position, Rect};
 use super::columns::Column;
 use super::row::{RunRow, Standing};
 use super::work::{self, RunsEffect, RunsNews, Work};
+use crate::dashboard::chrome::overlay;
+use crate::dashboard::context::{Mouse, line_at};
 use crate::dashboard::keys::{Action, Key, KeyMap};
 use crate::dashboard::look::Look;
-use crate::dashboard::mouse::{Mouse, line_at};
-use crate::dashboard::overlay;
 use crate::dashboard::panel::{body, inside};
 use crate::dashboard::view_id::ViewId;
 
@@ -78,7 +78,7 @@ impl RunsTable {
     }
 
     /// Says something to the person, until the next key.
-    pub fn say(&mut self, text: impl Into<String>) {
+    pub fn show_message(&mut self, text: impl Into<String>) {
         self.message = Some(text.into());
     }
 
@@ -140,7 +140,7 @@ impl RunsTable {
             Action::Help => self.help = Some(0),
             Action::Theme => {
                 self.look.next_theme();
-                self.say(format!("theme: {}", self.look.theme()));
+                self.show_message(format!("theme: {}", self.look.theme()));
             }
             Action::Quit if self.work.is_some() => self.asked = true,
             Action::Quit => return Some(RunsEffect::Leave),
@@ -180,8 +180,10 @@ impl RunsTable {
     fn open(&mut self) -> Option<RunsEffect> {
         let row = self.rows().get(self.selected)?;
         match (row.standing, &row.trouble) {
-            (Standing::Waiting, _) => self.say("this run has not begun"),
-            (Standing::Unreadable | Standing::Failed, Some(trouble)) => self.say(trouble.clone()),
+            (Standing::Waiting, _) => self.show_message("this run has not begun"),
+            (Standing::Unreadable | Standing::Failed, Some(trouble)) => {
+                self.show_message(trouble.clone())
+            }
             _ => return Some(RunsEffect::Open(self.selected)),
         }
         None

@@ -4,9 +4,9 @@
 use std::time::Duration;
 
 use super::row::RunRow;
+use crate::dashboard::chrome::overlay::{Line, plain};
 use crate::dashboard::keys::{Action, Key, KeyMap, Scope};
 use crate::dashboard::look::Paint;
-use crate::dashboard::overlay::{Line, plain};
 
 /// Something to be done by whoever drives the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

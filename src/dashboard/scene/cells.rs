@@ -6,7 +6,7 @@ use ratatui::style::Style;
 
 use super::lattice::Lattice;
 use super::marks::{Scene, agent, sign};
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::{Look, Paint, put, width};
 use crate::lab::specimen::{PolicyCell, PolicyMap};
 use crate::worlds::SubtaskId;
@@ -23,8 +23,13 @@ type Sign<'s> = (&'s str, Style);
 /// ┃   ↓          ┃   8.0                the letter of its subtask, and V(root), in its
 /// ┃  8.0                                place a digit from 0, the lowest, to 9
 /// ```
-pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, lattice: Lattice, buffer: &mut Buffer) {
-    let (look, scenery) = (&desk.look, desk.scenery());
+pub(super) fn draw_cells(
+    context: &ViewContext,
+    scene: &Scene<'_>,
+    lattice: Lattice,
+    buffer: &mut Buffer,
+) {
+    let (look, scenery) = (&context.look, context.scenery());
     let values = scene.cells.and_then(PolicyMap::values);
     let decimals = decimals(values, lattice.inside(0, 0));
     for (column, row) in lattice.cells() {
@@ -42,7 +47,7 @@ pub(super) fn draw_cells(desk: &Desk, scene: &Scene<'_>, lattice: Lattice, buffe
         let centre = lattice.centre(column, row);
         let content = Content {
             signs: signs(look, scenery, scene, centre),
-            action: cell.and_then(|cell| action(desk, cell)),
+            action: cell.and_then(|cell| action(context, cell)),
             value: cell.zip(share).map(|(cell, share)| match decimals {
                 Some(decimals) => format!("{:.decimals$}", cell.value),
                 None => ((share * 10.0).clamp(0.0, 9.0) as u32).to_string(),
@@ -121,17 +126,17 @@ fn signs<'s>(
 
 /// The greedy action of a cell: an arrow where it moves the agent, else the letter of its
 /// subtask.
-fn action(desk: &Desk, cell: &PolicyCell) -> Option<String> {
+fn action(context: &ViewContext, cell: &PolicyCell) -> Option<String> {
     let (subtask, _) = cell.greedy?;
-    let mut moves = desk.scenery().moves.iter();
+    let mut moves = context.scenery().moves.iter();
     Some(match moves.find(|known| known.subtask == subtask) {
-        Some(known) => desk.look.signs.heading(known.heading).to_owned(),
-        None => letter(desk, subtask).to_string(),
+        Some(known) => context.look.signs.heading(known.heading).to_owned(),
+        None => letter(context, subtask).to_string(),
     })
 }
 
-fn letter(desk: &Desk, subtask: SubtaskId) -> char {
-    let catalogue = desk.catalogue();
+fn letter(context: &ViewContext, subtask: SubtaskId) -> char {
+    let catalogue = context.catalogue();
     let mut named = catalogue.primitives().zip(catalogue.letters());
     let found = named.find(|(primitive, _)| *primitive == subtask);
     found.map_or('?', |(_, letter)| letter)

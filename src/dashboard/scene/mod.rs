@@ -1,10 +1,10 @@
 //! Worlds, drawn: cell by cell, or in their true proportions.
 
 mod cells;
+mod field_of_view;
 mod lattice;
 mod marks;
 mod plane;
-mod sight;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -16,20 +16,20 @@ pub(super) use plane::{draw_mark, in_proportion};
 use self::cells::draw_cells;
 use self::lattice::Lattice;
 use self::plane::draw_plane;
-use super::desk::Desk;
+use super::context::ViewContext;
 
 /// Draws the world and, if there is one, the agent in it, as large as the area allows.
 pub(in crate::dashboard) fn draw_scene(
-    desk: &Desk,
+    context: &ViewContext,
     scene: &Scene<'_>,
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let scenery = desk.scenery();
+    let scenery = context.scenery();
     // Where cells are too many for the area the world is drawn as one without cells.
     let lattice = scenery.grid.and_then(|grid| Lattice::fitting(area, grid));
     if let Some(lattice) = lattice {
-        return draw_cells(desk, scene, lattice, buffer);
+        return draw_cells(context, scene, lattice, buffer);
     }
-    draw_plane(&desk.look, scenery, scene, area, buffer);
+    draw_plane(&context.look, scenery, scene, area, buffer);
 }

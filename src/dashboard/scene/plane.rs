@@ -4,8 +4,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Rect};
 use ratatui::style::Style;
 
+use super::field_of_view::FieldOfView;
 use super::marks::{Scene, agent, sign};
-use super::sight::Sight;
 use crate::dashboard::look::{Canvas, Layer, Look, Paint, put};
 use crate::worlds::scene::{Mark, Scenery, Snapshot};
 
@@ -31,7 +31,7 @@ fn shade_sight(
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let Some(sight) = Sight::of(snapshot, scenery) else {
+    let Some(sight) = FieldOfView::of(snapshot, scenery) else {
         return;
     };
     let style = look.style(Paint::Sight);

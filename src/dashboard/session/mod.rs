@@ -10,7 +10,7 @@ mod loader;
 mod runs;
 mod save;
 mod source;
-mod woken;
+mod wait;
 
 use std::io;
 use std::path::Path;
@@ -23,13 +23,14 @@ pub use exit::Exit;
 pub use runs::{RunsExit, RunsSession};
 pub use source::{Live, Source};
 
+use super::app::App;
+use super::context::{Effect, Input, Mouse, ViewContext};
 use super::keys::Key;
 use super::terminal::{Job, Terminal};
-use super::{App, Desk, Effect, Input, Mouse};
 use crate::lab::specimen::{Archive, bench};
 use crate::lab::{Life, Manifest, News};
 use loader::{Loaded, Loader};
-use woken::{Woken, wait};
+use wait::{WakeUp, wait};
 
 /// Time between two looks whether the program is in the foreground again.
 const BACKGROUND: Duration = Duration::from_millis(250);
@@ -139,7 +140,7 @@ impl<'s> Session<'s> {
     /// Takes in the time, once a frame, and the news of the run.
     fn tick(&mut self) -> Option<Exit> {
         let elapsed = self.ticked.elapsed();
-        let first = self.app.desk().clock.is_zero();
+        let first = self.app.context().clock.is_zero();
         if elapsed < self.period() && !first {
             return None;
         }
@@ -151,7 +152,7 @@ impl<'s> Session<'s> {
             return Some(exit);
         }
         let effects = self.app.update(Input::Tick(elapsed));
-        if let Some(exit) = self.carry_out(effects) {
+        if let Some(exit) = self.run_effects(effects) {
             return Some(exit);
         }
         let hidden = !self.terminal.is_shown();
@@ -180,37 +181,37 @@ impl<'s> Session<'s> {
                     return Some(Exit::Failed);
                 }
                 if let Some(text) = describe(life) {
-                    self.say(text);
+                    self.show_message(text);
                 }
                 self.app.update(Input::Closed)
             }
         };
-        self.carry_out(effects)
+        self.run_effects(effects)
     }
 
     /// Turns to another run that took the place of the one before. One that is told again
     /// is taken in again.
     fn turn_to(&mut self, manifest: Manifest) {
-        let desk = self.app.desk();
-        if (&manifest.scenario, manifest.seed) == (desk.bench.scenario(), desk.bench.seed()) {
+        let context = self.app.context();
+        if (&manifest.scenario, manifest.seed) == (context.bench.scenario(), context.bench.seed()) {
             return;
         }
-        let (look, keys) = (desk.look.clone(), desk.keys.clone());
-        let (mode, folder, within) = (desk.mode, desk.folder.clone(), desk.within);
+        let (look, keys) = (context.look.clone(), context.keys.clone());
+        let (mode, folder, within) = (context.mode, context.folder.clone(), context.within);
         let turned = bench(manifest.scenario, manifest.seed)
             .map_err(|error| error.to_string())
             .and_then(|bench| {
                 let archive = Archive::new(bench, self.folder, None);
                 self.loader = Loader::start(archive).map_err(|error| error.to_string())?;
-                Ok(App::new(Desk::new(bench, folder, mode, look, keys)).within(within))
+                Ok(App::new(ViewContext::new(bench, folder, mode, look, keys)).within(within))
             });
         match turned {
             Ok(app) => {
                 self.app = app;
                 self.resize();
-                self.say("another run took the place of the one before");
+                self.show_message("another run took the place of the one before");
             }
-            Err(error) => self.say(&error),
+            Err(error) => self.show_message(&error),
         }
     }
 
@@ -234,7 +235,7 @@ impl<'s> Session<'s> {
         GAP.min(self.period).saturating_sub(since)
     }
 
-    fn wait(&self, signals: &Receiver<i32>) -> Woken<Loaded> {
+    fn wait(&self, signals: &Receiver<i32>) -> WakeUp<Loaded> {
         let mut left = self.period().saturating_sub(self.ticked.elapsed());
         // A terminal that is not ready tells when it is.
         if self.due && self.terminal.is_ready() {
@@ -243,26 +244,26 @@ impl<'s> Session<'s> {
         wait(self.terminal, signals, &self.loader.loaded, &after(left))
     }
 
-    fn act(&mut self, woken: Woken<Loaded>) -> Option<Exit> {
+    fn act(&mut self, woken: WakeUp<Loaded>) -> Option<Exit> {
         match woken {
-            Woken::Time | Woken::Drawn | Woken::Silence => None,
-            Woken::End(exit) => Some(exit),
-            Woken::Typed(typed) => self.typed(typed),
-            Woken::News(Loaded { generation, state }) => {
+            WakeUp::Time | WakeUp::Drawn | WakeUp::Silence => None,
+            WakeUp::End(exit) => Some(exit),
+            WakeUp::Typed(typed) => self.typed(typed),
+            WakeUp::News(Loaded { generation, state }) => {
                 // What a person chose is shown at once, what evolution did in its time.
-                self.due |= !self.app.desk().follows();
+                self.due |= !self.app.context().follows();
                 let effects = self.app.update(Input::Population { generation, state });
-                self.carry_out(effects)
+                self.run_effects(effects)
             }
-            Woken::Job(Job::Resize) => {
+            WakeUp::Job(Job::Resize) => {
                 self.resize();
                 None
             }
-            Woken::Job(Job::Suspend) => {
+            WakeUp::Job(Job::Suspend) => {
                 self.terminal.suspend();
                 None
             }
-            Woken::Job(Job::Continue) => self.appear().is_err().then_some(Exit::HungUp),
+            WakeUp::Job(Job::Continue) => self.appear().is_err().then_some(Exit::HungUp),
         }
     }
 
@@ -273,7 +274,7 @@ impl<'s> Session<'s> {
             if let Some(input) = input(&event) {
                 self.due = true;
                 let effects = self.app.update(input);
-                if let Some(exit) = self.carry_out(effects) {
+                if let Some(exit) = self.run_effects(effects) {
                     return Some(exit);
                 }
             }
@@ -286,10 +287,10 @@ impl<'s> Session<'s> {
         let size = self.terminal.resize();
         self.due = true;
         let effects = self.app.update(Input::Resize(size.width, size.height));
-        self.carry_out(effects)
+        self.run_effects(effects)
     }
 
-    fn carry_out(&mut self, effects: Vec<Effect>) -> Option<Exit> {
+    fn run_effects(&mut self, effects: Vec<Effect>) -> Option<Exit> {
         for effect in effects {
             match effect {
                 Effect::Quit => return Some(Exit::Left),
@@ -298,7 +299,7 @@ impl<'s> Session<'s> {
                 Effect::Detach => return Some(Exit::Detached),
                 Effect::Suspend => {
                     if !self.terminal.ask_to_suspend() {
-                        self.say("no shell waits that could continue the program");
+                        self.show_message("no shell waits that could continue the program");
                     }
                 }
                 Effect::Redraw => {
@@ -308,8 +309,8 @@ impl<'s> Session<'s> {
                 }
                 Effect::Load { generation } => self.loader.load(generation),
                 Effect::Export(export) => match save::save(Path::new("."), &export) {
-                    Ok(path) => self.say(&format!("written: {}", path.display())),
-                    Err(error) => self.say(&format!("{}: {error}", export.name)),
+                    Ok(path) => self.show_message(&format!("written: {}", path.display())),
+                    Err(error) => self.show_message(&format!("{}: {error}", export.name)),
                 },
                 steer => self.source.steer(&steer),
             }
@@ -317,7 +318,7 @@ impl<'s> Session<'s> {
         None
     }
 
-    fn say(&mut self, text: &str) {
+    fn show_message(&mut self, text: &str) {
         self.due = true;
         // What is said leads to nothing but its being read.
         let _none = self.app.update(Input::Message(text.to_owned()));

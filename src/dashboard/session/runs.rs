@@ -5,9 +5,9 @@ use std::io;
 use crossbeam_channel::{Receiver, after, never};
 use crossterm::event::Event as Typed;
 
-use super::woken::{Woken, wait};
+use super::wait::{WakeUp, wait};
 use super::{BACKGROUND, Exit, input};
-use crate::dashboard::Input;
+use crate::dashboard::context::Input;
 use crate::dashboard::runs::{RunsEffect, RunsNews, RunsTable};
 use crate::dashboard::terminal::{Job, Terminal};
 
@@ -84,7 +84,7 @@ impl<'s> RunsSession<'s> {
         self.due = true;
     }
 
-    fn wait(&self, signals: &Receiver<i32>) -> Woken<RunsNews> {
+    fn wait(&self, signals: &Receiver<i32>) -> WakeUp<RunsNews> {
         let again = match self.terminal.is_shown() {
             true => never(),
             false => after(BACKGROUND),
@@ -92,17 +92,17 @@ impl<'s> RunsSession<'s> {
         wait(self.terminal, signals, self.news, &again)
     }
 
-    fn act(&mut self, woken: Woken<RunsNews>) -> Option<RunsExit> {
+    fn act(&mut self, woken: WakeUp<RunsNews>) -> Option<RunsExit> {
         match woken {
-            Woken::Drawn => {}
-            Woken::End(exit) => return Some(RunsExit::End(exit)),
-            Woken::Silence => return Some(RunsExit::End(Exit::Failed)),
-            Woken::Typed(typed) => return self.typed(&typed),
-            Woken::News(news) => self.due |= self.table.take_in(news),
-            Woken::Job(Job::Resize) => self.resize(),
-            Woken::Job(Job::Suspend) => self.terminal.suspend(),
-            Woken::Time if self.terminal.is_shown() => {}
-            Woken::Time | Woken::Job(Job::Continue) => {
+            WakeUp::Drawn => {}
+            WakeUp::End(exit) => return Some(RunsExit::End(exit)),
+            WakeUp::Silence => return Some(RunsExit::End(Exit::Failed)),
+            WakeUp::Typed(typed) => return self.typed(&typed),
+            WakeUp::News(news) => self.due |= self.table.take_in(news),
+            WakeUp::Job(Job::Resize) => self.resize(),
+            WakeUp::Job(Job::Suspend) => self.terminal.suspend(),
+            WakeUp::Time if self.terminal.is_shown() => {}
+            WakeUp::Time | WakeUp::Job(Job::Continue) => {
                 if self.appear().is_err() {
                     return Some(RunsExit::End(Exit::HungUp));
                 }
@@ -125,7 +125,7 @@ impl<'s> RunsSession<'s> {
             RunsEffect::Detach => return Some(RunsExit::End(Exit::Detached)),
             RunsEffect::Suspend if !self.terminal.ask_to_suspend() => {
                 let why = "no shell waits that could continue the program";
-                self.table.say(why);
+                self.table.show_message(why);
             }
             RunsEffect::Suspend => {}
             RunsEffect::Redraw => {

@@ -4,7 +4,7 @@ use std::fs::OpenOptions;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use crate::dashboard::input::Export;
+use crate::dashboard::context::Export;
 
 /// Files of one name in a folder before there is no other name for one more.
 const MOST: u32 = 10_000;

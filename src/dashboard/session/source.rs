@@ -2,7 +2,7 @@
 
 use crossbeam_channel::{Receiver, TryRecvError};
 
-use crate::dashboard::Effect;
+use crate::dashboard::context::Effect;
 use crate::lab::{Activity, Controls, Event, Life, News, Recording, Watch};
 
 /// News that are taken in at once; if there are more, the others come with the next frame.

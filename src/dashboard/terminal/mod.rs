@@ -7,12 +7,12 @@
 mod cursor;
 mod jobs;
 mod keyboard;
-mod outlet;
 mod painter;
 mod pen;
 mod screen;
-mod strokes;
+mod style_runs;
 mod tty;
+mod writer;
 
 use std::io;
 use std::panic;
@@ -30,10 +30,10 @@ pub use tty::{detach, is_attached, is_terminal};
 
 use jobs::Jobs;
 use keyboard::Keyboard;
-use outlet::Outlet;
 use painter::Painter;
 use screen::Screen;
 use tty::Tty;
+use writer::Writer;
 
 /// The terminal of this process.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ pub struct Terminal {
     pub drawn: Receiver<io::Result<()>>,
     screen: Arc<Screen>,
     painter: ratatui::Terminal<Painter>,
-    outlet: Outlet,
+    writer: Writer,
     keyboard: Keyboard,
     _jobs: Jobs,
 }
@@ -62,7 +62,7 @@ impl Terminal {
         let screen = Screen::new(Tty::open()?, mouse);
         give_back_on_panic();
         let (keyboard, keys) = Keyboard::start(Arc::clone(&screen))?;
-        let (outlet, drawn) = Outlet::start(Arc::clone(&screen))?;
+        let (writer, drawn) = Writer::start(Arc::clone(&screen))?;
         let (jobs, told) = Jobs::start()?;
         let size = screen.tty.size().unwrap_or(Size::new(80, 24));
         Ok(Self {
@@ -71,7 +71,7 @@ impl Terminal {
             drawn,
             screen,
             painter: ratatui::Terminal::new(Painter::new(size))?,
-            outlet,
+            writer,
             keyboard,
             _jobs: jobs,
         })
@@ -114,7 +114,7 @@ impl Terminal {
     /// Whether a frame can be drawn now: the screen is ours and the last frame has gone.
     #[must_use]
     pub fn is_ready(&self) -> bool {
-        self.is_shown() && self.outlet.is_free()
+        self.is_shown() && self.writer.is_free()
     }
 
     /// Draws a frame. Nothing is sent where nothing has changed.
@@ -124,7 +124,7 @@ impl Terminal {
     pub fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) -> io::Result<()> {
         self.painter.draw(render)?;
         if let Some(frame) = self.painter.backend_mut().take_frame() {
-            self.outlet.send(frame);
+            self.writer.send(frame);
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 //! frame is whole.
 //!
 //! Half of what a frame would cost in reading order are changes of colour, so that everything
-//! of one look is painted in one go ([`Strokes`]); moves of the cursor are shorter than they.
+//! of one look is painted in one go ([`StyleRuns`]); moves of the cursor are shorter than they.
 
 use std::io;
 
@@ -13,7 +13,7 @@ use unicode_width::UnicodeWidthStr;
 
 use super::cursor::shortest_way;
 use super::pen::Pen;
-use super::strokes::Strokes;
+use super::style_runs::StyleRuns;
 
 /// Tells the terminal to show what follows at once, when it is whole; the pen is new.
 const BEGIN_FRAME: &[u8] = b"\x1b[?2026h\x1b[m";
@@ -131,8 +131,8 @@ impl Backend for Painter {
     {
         let content: Vec<_> = content.collect();
         self.wipe_wide(&content);
-        let mut strokes = Strokes::of(content.into_iter());
-        while let Some((pen, cells)) = strokes.take_nearest(self.pen) {
+        let mut style_runs = StyleRuns::of(content.into_iter());
+        while let Some((pen, cells)) = style_runs.take_nearest(self.pen) {
             self.change_pen(pen);
             for (at, cell) in cells {
                 self.print(at, cell);
@@ -284,11 +284,11 @@ mod tests {
             let mut painter = ratatui::Terminal::new(Painter::new(size)).unwrap();
             painter.clear().unwrap();
             let mut short_way = terminal();
-            let mut strokes: Vec<Stroke> = Vec::new();
+            let mut style_runs: Vec<Stroke> = Vec::new();
             for frame in frames {
-                strokes.extend(frame);
+                style_runs.extend(frame);
                 let paint = |buffer: &mut Buffer| {
-                    for &(x, y, text, style) in &strokes {
+                    for &(x, y, text, style) in &style_runs {
                         buffer.set_string(x, y, text, style);
                     }
                     without_halves(buffer);

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::shared::{case, pace};
 use super::view::View;
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Look, Paint, fitted, put, width, wrapped};
 use crate::dashboard::scene::{Scene, draw_scene};
@@ -30,22 +30,34 @@ pub(super) struct Arena;
 const STATE: usize = 3;
 
 impl View for Arena {
-    fn caption(&self, desk: &Desk) -> String {
-        let Some(subject) = desk.stage.subject() else {
+    fn name(&self) -> &'static str {
+        "arena"
+    }
+
+    fn title(&self) -> &'static str {
+        "Arena"
+    }
+
+    fn needs_rollout(&self) -> bool {
+        true
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        let Some(subject) = context.player.subject() else {
             return String::new();
         };
-        let (separator, pace) = (desk.look.signs.separator, pace(desk));
+        let (separator, pace) = (context.look.signs.separator, pace(context));
         let (id, generation) = (subject.id, subject.generation);
         format!("id {id}, gen {generation} {separator} {pace}")
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let foot = (state_rows(desk, area) + 1).min(area.height / 3);
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let foot = (state_rows(context, area) + 1).min(area.height / 3);
         let above = Rect {
             height: area.height - foot,
             ..area
         };
-        let rollout = desk.stage.rollout();
+        let rollout = context.player.rollout();
         let snapshot = rollout.map(|rollout| rollout.snapshot());
         let cells = rollout.and_then(|rollout| rollout.cells());
         let scene = Scene {
@@ -54,14 +66,14 @@ impl View for Arena {
             cells: cells.as_ref(),
             ..Scene::default()
         };
-        draw_scene(desk, &scene, above, buffer);
+        draw_scene(context, &scene, above, buffer);
         let below = Rect {
             x: area.x + 1,
             y: area.y + above.height,
             width: area.width.saturating_sub(1),
             height: foot,
         };
-        draw_foot(desk, snapshot.as_ref(), below, buffer);
+        draw_foot(context, snapshot.as_ref(), below, buffer);
     }
 
     fn hints(&self) -> &'static [Action] {
@@ -74,7 +86,7 @@ impl View for Arena {
         ]
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "A rollout: a copy of the individual acts and learns in the arena, trial after trial, as\n\
          in its generation; evolution knows nothing of it. Shaded is what the robot sees, fine\n\
          lines are its proximity rays. A carried battery is gone from the arena. The state type\n\
@@ -92,16 +104,16 @@ fn trail(rollout: &dyn Rollout) -> Vec<[f64; 2]> {
 
 /// Rows that the state takes: as many as that with the longest name, so that the arena keeps
 /// its size.
-fn state_rows(desk: &Desk, area: Rect) -> u16 {
-    let variants = desk.bench.variants();
-    let cases: Vec<_> = match desk.scenery().grid.is_some() && variants.len() > 1 {
+fn state_rows(context: &ViewContext, area: Rect) -> u16 {
+    let variants = context.bench.variants();
+    let cases: Vec<_> = match context.scenery().grid.is_some() && variants.len() > 1 {
         true => variants.iter().map(|case| Some(case.as_str())).collect(),
         false => vec![None],
     };
-    let types = desk.catalogue().types();
+    let types = context.catalogue().types();
     let texts = types.flat_map(|state_type| {
         let texts = cases.iter();
-        texts.map(move |case| state(desk, state_type, *case))
+        texts.map(move |case| state(context, state_type, *case))
     });
     let columns = usize::from(area.width.saturating_sub(1));
     let rows = texts.map(|text| wrapped(&text, columns, "").len());
@@ -109,13 +121,13 @@ fn state_rows(desk: &Desk, area: Rect) -> u16 {
 }
 
 /// State type, time step, and how the latest trials ended.
-fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut Buffer) {
-    let look = &desk.look;
+fn draw_foot(context: &ViewContext, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut Buffer) {
+    let look = &context.look;
     let columns = usize::from(area.width);
-    let (Some(rollout), Some(snapshot)) = (desk.stage.rollout(), snapshot) else {
-        let why = match desk.stage.refused() {
+    let (Some(rollout), Some(snapshot)) = (context.player.rollout(), snapshot) else {
+        let why = match context.player.load_error() {
             Some(why) => why,
-            None if desk.shown().is_none() => "no individual has lived yet",
+            None if context.shown().is_none() => "no individual has lived yet",
             None => "the individual is being fetched",
         };
         put_wrapped(look, (why, Paint::Dim), area, buffer);
@@ -126,8 +138,8 @@ fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut 
         Some(record) if record.delivered => (String::from("done"), Paint::Good),
         Some(_) => (String::from("gave up at the limit"), Paint::Bad),
         None => {
-            let case = case(desk, snapshot);
-            (state(desk, snapshot.state_type, case), Paint::Notice)
+            let case = case(context, snapshot);
+            (state(context, snapshot.state_type, case), Paint::Notice)
         }
     };
     let last = area.height.saturating_sub(1);
@@ -141,7 +153,7 @@ fn draw_foot(desk: &Desk, snapshot: Option<&Snapshot>, area: Rect, buffer: &mut 
     }
     let step = format!("trial {} step {:<4} ", status.trial, status.steps);
     let mut column = put(buffer, area, (0, last), &step, look.style(Paint::Text));
-    if desk.stage.halted() {
+    if context.player.halted() {
         let halted = "halted ";
         column = put(
             buffer,
@@ -184,9 +196,9 @@ fn put_wrapped(look: &Look, (text, paint): (&str, Paint), area: Rect, buffer: &m
 }
 
 /// The state type's number and what is the case in it.
-fn state(desk: &Desk, state_type: StateType, case: Option<&str>) -> String {
+fn state(context: &ViewContext, state_type: StateType, case: Option<&str>) -> String {
     let number = state_type.number();
-    let types = &desk.catalogue().state_types;
+    let types = &context.catalogue().state_types;
     let Some(info) = types.get(number - 1) else {
         return String::from("done");
     };

@@ -8,11 +8,12 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::view::View;
-use crate::dashboard::desk::{Chosen, Desk};
-use crate::dashboard::input::Effect;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::{Chosen, ViewContext};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, last_start, percent};
 use crate::dashboard::look::{Paint, fitted, put, width, wrapped};
+use crate::dashboard::view_id::ViewId;
 use crate::evolution::RankedRecord;
 use crate::hierarchy::{Tree, draw, structural_difference, to_dot};
 use crate::lab::specimen::Specimen;
@@ -55,9 +56,9 @@ struct Side<'d> {
 }
 
 impl Compare {
-    fn sides<'d>(&'d self, desk: &'d Desk) -> Option<[Side<'d>; 2]> {
-        let records = desk.rivals()?;
-        let [one, other] = [desk.tree(records[0])?, desk.tree(records[1])?];
+    fn sides<'d>(&'d self, context: &'d ViewContext) -> Option<[Side<'d>; 2]> {
+        let records = context.rivals()?;
+        let [one, other] = [context.tree(records[0])?, context.tree(records[1])?];
         let unlike = [unlike(&one, &other), unlike(&other, &one)];
         let known = self
             .selection
@@ -111,8 +112,8 @@ fn unlike(tree: &Tree, other: &Tree) -> Vec<bool> {
 }
 
 impl Compare {
-    fn scroll(&mut self, desk: &Desk, action: Action) -> Option<Vec<Effect>> {
-        let page = usize::from(desk.size.1 / 2);
+    fn scroll(&mut self, context: &ViewContext, action: Action) -> Option<Vec<Effect>> {
+        let page = usize::from(context.size.1 / 2);
         self.scroll = match action {
             Action::PageUp => self.scroll.saturating_sub(page),
             Action::PageDown => self.scroll + page,
@@ -120,33 +121,39 @@ impl Compare {
             Action::Bottom => usize::MAX,
             _ => return None,
         };
-        let longest = self.longest(desk);
-        self.scroll = self.scroll.min(last_start(longest, rows(desk)));
+        let longest = self.longest(context);
+        self.scroll = self.scroll.min(last_start(longest, rows(context)));
         Some(Vec::new())
     }
 
     /// Lines of the longer side.
-    fn longest(&self, desk: &Desk) -> usize {
-        let columns = usize::from((desk.size.0 / 2).saturating_sub(3));
-        self.sides(desk).map_or(0, |[one, other]| {
+    fn longest(&self, context: &ViewContext) -> usize {
+        let columns = usize::from((context.size.0 / 2).saturating_sub(3));
+        self.sides(context).map_or(0, |[one, other]| {
             let lines = [(&one, &other), (&other, &one)]
-                .map(|(side, against)| side.lines(desk, "", against, columns).len());
+                .map(|(side, against)| side.lines(context, "", against, columns).len());
             lines.into_iter().max().unwrap_or(0)
         })
     }
 }
 
 /// Rows of a side: without header, hint bar, border and note.
-fn rows(desk: &Desk) -> u16 {
-    desk.size.1.saturating_sub(5)
+fn rows(context: &ViewContext) -> u16 {
+    context.size.1.saturating_sub(5)
 }
 
 impl Side<'_> {
-    fn lines(&self, desk: &Desk, role: &str, other: &Self, columns: usize) -> Vec<Line<'static>> {
-        let look = &desk.look;
+    fn lines(
+        &self,
+        context: &ViewContext,
+        role: &str,
+        other: &Self,
+        columns: usize,
+    ) -> Vec<Line<'static>> {
+        let look = &context.look;
         let record = self.record;
         let steps = record.fitness_steps as f64 / record.trials.len().max(1) as f64;
-        let generation = desk.looked_at().map_or(0, |(generation, _)| generation);
+        let generation = context.inspected().map_or(0, |(generation, _)| generation);
         let head = format!("individual {}, generation {generation}", record.id);
         let delivered = record.trials.iter().filter(|trial| trial.delivered).count();
         let facts = [
@@ -161,7 +168,7 @@ impl Side<'_> {
         let mut lines = vec![Pen::new(look).text(head, Paint::Title).line()];
         lines.extend(facts.map(|fact| Pen::new(look).text(fact, Paint::Text).line()));
         lines.push(Line::default());
-        let drawn = draw(&self.tree, desk.catalogue(), look.signs.tree);
+        let drawn = draw(&self.tree, context.catalogue(), look.signs.tree);
         for (line, unlike) in drawn.into_iter().zip(&self.unlike) {
             let (sign, paint) = match unlike {
                 true => ("+ ", Paint::Notice),
@@ -170,17 +177,22 @@ impl Side<'_> {
             lines.push(Pen::new(look).text(sign, paint).text(line, paint).line());
         }
         lines.push(Line::default());
-        lines.extend(self.selection_lines(desk, other, columns));
+        lines.extend(self.selection_lines(context, other, columns));
         lines
     }
 
     /// Selection probabilities, marked where they are far from the other's.
-    fn selection_lines(&self, desk: &Desk, other: &Self, columns: usize) -> Vec<Line<'static>> {
-        let look = &desk.look;
+    fn selection_lines(
+        &self,
+        context: &ViewContext,
+        other: &Self,
+        columns: usize,
+    ) -> Vec<Line<'static>> {
+        let look = &context.look;
         let Some(selection) = self.selection else {
-            let why = desk
-                .stage
-                .refused()
+            let why = context
+                .player
+                .load_error()
                 .unwrap_or("what they select is being worked out");
             let lines = wrapped(why, columns, "").into_iter();
             return lines
@@ -192,7 +204,7 @@ impl Side<'_> {
             let Some(of) = of else { continue };
             let theirs = other.selection.and_then(|all| all.get(index)?.as_ref());
             let mut pen = Pen::new(look).text(format!("{} ", index + 1), Paint::Title);
-            for (place, primitive) in desk.catalogue().primitives().enumerate() {
+            for (place, primitive) in context.catalogue().primitives().enumerate() {
                 let share = of[place];
                 let far = theirs.is_some_and(|theirs| (theirs[place] - share).abs() >= 0.1);
                 if share < 0.005 && !far {
@@ -202,7 +214,7 @@ impl Side<'_> {
                     true => ("+", Paint::Notice),
                     false => (" ", Paint::Text),
                 };
-                let name = primitive.name(desk.catalogue());
+                let name = primitive.name(context.catalogue());
                 let text = format!("{sign}{name} {}", percent(share));
                 if pen.column() + width(&text) > columns {
                     lines.push(pen.line());
@@ -217,20 +229,36 @@ impl Side<'_> {
 }
 
 impl View for Compare {
-    fn caption(&self, desk: &Desk) -> String {
-        let Some([one, other]) = self.sides(desk) else {
+    fn name(&self) -> &'static str {
+        "compare"
+    }
+
+    fn title(&self) -> &'static str {
+        "Comparison"
+    }
+
+    fn needs_rollout(&self) -> bool {
+        true
+    }
+
+    fn opens(&self) -> Option<ViewId> {
+        Some(ViewId::Inspector)
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        let Some([one, other]) = self.sides(context) else {
             return String::new();
         };
-        let difference = structural_difference(&one.tree, &other.tree, desk.catalogue());
+        let difference = structural_difference(&one.tree, &other.tree, context.catalogue());
         match difference {
             0 => String::from("the same structure"),
             _ => format!("structural difference {difference}"),
         }
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let look = &desk.look;
-        let Some([one, other]) = self.sides(desk) else {
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let look = &context.look;
+        let Some([one, other]) = self.sides(context) else {
             let text = fitted(
                 "no two individuals have lived yet",
                 area.width.into(),
@@ -239,15 +267,15 @@ impl View for Compare {
             put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
             return;
         };
-        let role = match desk.marked == Some(other.record.id) {
+        let role = match context.marked == Some(other.record.id) {
             true => "marked",
             false => "next best",
         };
         let half = area.width / 2;
         let columns = usize::from(half.saturating_sub(2));
         let sides = [
-            (0, one.lines(desk, "selected", &other, columns)),
-            (half, other.lines(desk, role, &one, columns)),
+            (0, one.lines(context, "selected", &other, columns)),
+            (half, other.lines(context, role, &one, columns)),
         ];
         for (x, lines) in sides {
             let side = Rect {
@@ -258,7 +286,7 @@ impl View for Compare {
             };
             draw_lines(look, &lines, self.scroll, side, buffer);
         }
-        let key = desk
+        let key = context
             .keys
             .hint(Action::Mark, look.signs)
             .map_or(String::new(), |(key, _)| key);
@@ -280,35 +308,35 @@ impl View for Compare {
         ]
     }
 
-    fn can(&self, desk: &Desk, action: Action) -> bool {
+    fn can(&self, context: &ViewContext, action: Action) -> bool {
         match action {
-            Action::Down => desk.rivals().is_some(),
-            Action::PageDown => self.longest(desk) > usize::from(rows(desk)),
+            Action::Down => context.rivals().is_some(),
+            Action::PageDown => self.longest(context) > usize::from(rows(context)),
             _ => true,
         }
     }
 
     /// The selected individual changes by rank; pages are those of both sides.
-    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
+    fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
         let by = match action {
             Action::Up => -1,
             Action::Down => 1,
-            scrolls => return self.scroll(desk, scrolls),
+            scrolls => return self.scroll(context, scrolls),
         };
-        let record = desk.shown()?;
-        let here = desk.selected()?.rank.saturating_sub(1);
+        let record = context.shown()?;
+        let here = context.selected()?.rank.saturating_sub(1);
         let next = here.saturating_add_signed(by);
         if let Some(individual) = record.individuals.get(next) {
-            desk.chosen = Chosen::Id(individual.id);
+            context.chosen = Chosen::Id(individual.id);
         }
         Some(Vec::new())
     }
 
-    fn prepare(&mut self, desk: &Desk) {
-        let Some([one, other]) = desk.rivals() else {
+    fn prepare(&mut self, context: &ViewContext) {
+        let Some([one, other]) = context.rivals() else {
             return;
         };
-        let Some(state) = desk.stage.population() else {
+        let Some(state) = context.player.population() else {
             return;
         };
         let ids = [one.id, other.id];
@@ -326,12 +354,12 @@ impl View for Compare {
         self.selection = Some(Selections {
             generation: state.generation,
             ids,
-            of: [one, other].map(|specimen| desk.bench.selection(specimen)),
+            of: [one, other].map(|specimen| context.bench.selection(specimen)),
         });
     }
 
-    fn csv(&self, desk: &Desk) -> Option<String> {
-        let sides = self.sides(desk)?;
+    fn csv(&self, context: &ViewContext) -> Option<String> {
+        let sides = self.sides(context)?;
         let mut csv = String::from("individual,rank,node,parent,subtask,only_here\n");
         for side in &sides {
             for (node, unlike) in side.unlike.iter().enumerate() {
@@ -343,7 +371,7 @@ impl View for Compare {
                     side.record.id,
                     side.record.rank,
                     parent.map_or(String::new(), |parent| parent.to_string()),
-                    desk.catalogue().subtask(side.tree.subtask(node)).name,
+                    context.catalogue().subtask(side.tree.subtask(node)).name,
                     u8::from(*unlike)
                 );
             }
@@ -351,11 +379,14 @@ impl View for Compare {
         Some(csv)
     }
 
-    fn dot(&self, desk: &Desk) -> Option<String> {
-        Some(to_dot(&desk.tree(desk.selected()?)?, desk.catalogue()))
+    fn dot(&self, context: &ViewContext) -> Option<String> {
+        Some(to_dot(
+            &context.tree(context.selected()?)?,
+            context.catalogue(),
+        ))
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "The selected individual beside another: the marked one, or the best of the others.\n\
          What one has and the other has not is marked +: a composite subtask, or a primitive\n\
          child more often under the same composite. These are the terms of the structural\n\

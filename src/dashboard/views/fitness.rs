@@ -7,7 +7,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::shared::{THROUGH_TIME, by_chance, nothing_yet, over_generations};
 use super::view::View;
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Paint, put, width};
 use crate::evolution::GenerationRecord;
@@ -36,22 +36,30 @@ const CURVES: [(&str, Paint); 3] = [
 const TWO_CHARTS: u16 = 11;
 
 impl View for Fitness {
-    fn caption(&self, desk: &Desk) -> String {
-        match desk.shown().map(|record| better_half(record)) {
+    fn name(&self) -> &'static str {
+        "fitness"
+    }
+
+    fn title(&self) -> &'static str {
+        "Fitness"
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        match context.shown().map(|record| better_half(record)) {
             None | Some(0) => String::from("time steps a trial"),
             Some(half) => {
-                let separator = desk.look.signs.separator;
-                let ranked = by_chance(desk).map_or("best", |_| "first by chance");
+                let separator = context.look.signs.separator;
+                let ranked = by_chance(context).map_or("best", |_| "first by chance");
                 format!("time steps a trial {separator} the {half} {ranked}")
             }
         }
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let (Some(mut chart), Some(shown)) = (fitness_chart(desk), desk.shown()) else {
-            return nothing_yet(desk, area, buffer);
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let (Some(mut chart), Some(shown)) = (fitness_chart(context), context.shown()) else {
+            return nothing_yet(context, area, buffer);
         };
-        let look = &desk.look;
+        let look = &context.look;
         let two = area.height >= TWO_CHARTS;
         let lower = if two { area.height / 3 } else { 0 };
         let rows = [
@@ -62,14 +70,14 @@ impl View for Fitness {
         ];
         let [above, legend, below, difference] = Layout::vertical(rows).areas(area);
         let [above, below] = [above, below].map(indented);
-        let mut difference_chart = difference_chart(desk);
+        let mut difference_chart = difference_chart(context);
         if two {
             // One axis for both.
             chart.margin = difference_chart.left();
             difference_chart.margin = chart.left();
         }
         chart.draw(look, above, buffer);
-        draw_legend(desk, shown, legend, buffer);
+        draw_legend(context, shown, legend, buffer);
         if two {
             difference_chart.draw(look, below, buffer);
             let text = format!("difference to the best {:.1}", shown.mean_difference);
@@ -87,10 +95,10 @@ impl View for Fitness {
         THROUGH_TIME
     }
 
-    fn csv(&self, desk: &Desk) -> Option<String> {
+    fn csv(&self, context: &ViewContext) -> Option<String> {
         let names = CURVES.map(|(name, _)| format!("{name}_steps")).join(",");
         let mut csv = format!("generation,{names},mean_difference,converged\n");
-        for record in desk.model().generations() {
+        for record in context.history().generations() {
             let Some([best, median, worst]) = better_half_steps(record) else {
                 continue;
             };
@@ -105,7 +113,7 @@ impl View for Fitness {
         Some(csv)
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "Mean time steps of a scored trial of the best, the median and the worst of the better\n\
          half of the population (Thesis Figure 4.8); fewer is better. Fitness is noisy: the same\n\
          individual scores differently in every generation, and the best is the luckiest too.\n\
@@ -141,8 +149,8 @@ fn better_half_steps(record: &GenerationRecord) -> Option<[f64; 3]> {
     Some([at(1)?, median, at(half)?])
 }
 
-fn fitness_chart(desk: &Desk) -> Option<Chart> {
-    let records = desk.model().generations();
+fn fitness_chart(context: &ViewContext) -> Option<Chart> {
+    let records = context.history().generations();
     let steps: Vec<_> = records
         .iter()
         .map(|record| (record.generation as f64, better_half_steps(record)))
@@ -158,28 +166,28 @@ fn fitness_chart(desk: &Desk) -> Option<Chart> {
         letter: None,
     });
     let least = [lowest * 0.9, lowest];
-    Some(over_generations(desk, curves.collect(), least).rounded())
+    Some(over_generations(context, curves.collect(), least).rounded())
 }
 
-fn difference_chart(desk: &Desk) -> Chart {
-    let records = desk.model().generations().iter();
+fn difference_chart(context: &ViewContext) -> Chart {
+    let records = context.history().generations().iter();
     let points = records.map(|record| Some([record.generation as f64, record.mean_difference]));
     let curve = Curve {
         points: points.collect(),
         paint: Paint::Series1,
         letter: None,
     };
-    over_generations(desk, vec![curve], [-1.0, 0.0]).rounded()
+    over_generations(context, vec![curve], [-1.0, 0.0]).rounded()
 }
 
-fn draw_legend(desk: &Desk, shown: &GenerationRecord, line: Rect, buffer: &mut Buffer) {
-    let look = &desk.look;
+fn draw_legend(context: &ViewContext, shown: &GenerationRecord, line: Rect, buffer: &mut Buffer) {
+    let look = &context.look;
     let Some(steps) = better_half_steps(shown) else {
         return;
     };
     let room = usize::from(line.width.saturating_sub(1));
     // Where curves are drawn with signs, the legend says whose sign is which.
-    let names = match by_chance(desk) {
+    let names = match by_chance(context) {
         Some(_) => ["first", "middle", "last"],
         None => CURVES.map(|(name, _)| name),
     };

@@ -20,14 +20,18 @@ mod view;
 pub(super) use overview::panels;
 pub(super) use view::View;
 
+use std::str::FromStr;
+
+use thiserror::Error;
+
 use super::view_id::ViewId;
 
-/// All views in the order of [`ViewId::all`].
+/// Returns all views in the order of [`ViewId::all`].
 pub(super) fn all() -> Vec<(ViewId, Box<dyn View>)> {
-    ViewId::all().map(|id| (id, make(id))).collect()
+    ViewId::all().map(|id| (id, view(id))).collect()
 }
 
-fn make(id: ViewId) -> Box<dyn View> {
+fn view(id: ViewId) -> Box<dyn View> {
     match id {
         ViewId::Overview => Box::new(overview::Overview),
         ViewId::Arena => Box::new(arena::Arena),
@@ -40,5 +44,43 @@ fn make(id: ViewId) -> Box<dyn View> {
         ViewId::PolicyMap => Box::new(policy_map::Map::default()),
         ViewId::Stepper => Box::new(stepper::Stepper::default()),
         ViewId::Compare => Box::new(compare::Compare::default()),
+    }
+}
+
+impl ViewId {
+    /// Returns the name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        view(self).name()
+    }
+
+    /// Returns the title on the screen.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        view(self).title()
+    }
+}
+
+/// A name that no view has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("found {found:?}; allowed: {}", names())]
+pub struct UnknownView {
+    /// The name.
+    pub found: String,
+}
+
+fn names() -> String {
+    let names: Vec<_> = ViewId::all().map(ViewId::name).collect();
+    names.join(", ")
+}
+
+impl FromStr for ViewId {
+    type Err = UnknownView;
+
+    fn from_str(name: &str) -> Result<Self, UnknownView> {
+        let found = Self::all().find(|id| id.name() == name);
+        found.ok_or_else(|| UnknownView {
+            found: name.to_owned(),
+        })
     }
 }

@@ -5,7 +5,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::policy;
 use super::view::View;
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::width;
 use crate::dashboard::view_id::ViewId;
@@ -32,12 +32,12 @@ const STATUS: u16 = 36;
 ///  ╭ Fitness ╮╭ Policy ────╮╭ Popul. ─╮    ╭ Fitness ────╮╭ Population ╮
 ///  ╰─────────╯╰────────────╯╰─────────╯    ╰─────────────╯╰────────────╯
 /// ```
-pub(in crate::dashboard) fn panels(area: Rect, desk: &Desk) -> Vec<(ViewId, Rect)> {
+pub(in crate::dashboard) fn panels(area: Rect, context: &ViewContext) -> Vec<(ViewId, Rect)> {
     let upper = area.height * 14 / 25;
     let rows = Layout::vertical([Constraint::Length(upper), Constraint::Fill(1)]).areas(area);
     let [above, below]: [Rect; 2] = rows;
     // As wide as the world is for its height, cells being about twice as high as wide.
-    let [width, height] = desk.scenery().extent;
+    let [width, height] = context.scenery().extent;
     let arena = f64::from(upper.saturating_sub(2)) * 2.0 * width / height;
     let most = match area.width < WIDE {
         true => area.width / 2,
@@ -63,7 +63,7 @@ pub(in crate::dashboard) fn panels(area: Rect, desk: &Desk) -> Vec<(ViewId, Rect
     let [arena, hierarchy, status] = columns(above, upper);
     let lower = [
         Constraint::Fill(1),
-        Constraint::Length(policy_columns(desk, area.width)),
+        Constraint::Length(policy_columns(context, area.width)),
         Constraint::Length((area.width * 4 / 13).max(POPULATION)),
     ];
     let [fitness, policy, population] = columns(below, lower);
@@ -78,8 +78,8 @@ pub(in crate::dashboard) fn panels(area: Rect, desk: &Desk) -> Vec<(ViewId, Rect
 }
 
 /// Columns of the policy panel: a share of all, and those of the longest name of a state type.
-fn policy_columns(desk: &Desk, all: u16) -> u16 {
-    let types = desk.catalogue().state_types.iter().enumerate();
+fn policy_columns(context: &ViewContext, all: u16) -> u16 {
+    let types = context.catalogue().state_types.iter().enumerate();
     let longest = types.map(|(index, info)| width(&policy::title(index, &info.description)));
     let wanted = longest.max().unwrap_or(0) + 4;
     let wanted = u16::try_from(wanted).unwrap_or(u16::MAX);
@@ -91,13 +91,21 @@ fn columns<const N: usize>(area: Rect, widths: [Constraint; N]) -> [Rect; N] {
 }
 
 impl View for Overview {
-    fn draw(&self, _desk: &Desk, _area: Rect, _buffer: &mut Buffer) {}
+    fn name(&self) -> &'static str {
+        "overview"
+    }
+
+    fn title(&self) -> &'static str {
+        "Overview"
+    }
+
+    fn draw(&self, _desk: &ViewContext, _area: Rect, _buffer: &mut Buffer) {}
 
     fn hints(&self) -> &'static [Action] {
         &[]
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "A population of MAXQ task hierarchies lives in one world. In every generation each\n\
          learns while it acts in the same trials; the fewest time steps win. The best live on,\n\
          typed crossover of the good replaces the rest, and offspring inherit what their\n\

@@ -9,7 +9,7 @@ use ratatui::style::Modifier;
 
 use super::shared::{THROUGH_TIME, nothing_yet, over_generations};
 use super::view::View;
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::percent;
 use crate::dashboard::look::{
@@ -38,18 +38,26 @@ const TWO_COLUMNS: u16 = 90;
 const SMALL: f64 = 0.005;
 
 impl View for Policy {
-    fn caption(&self, desk: &Desk) -> String {
-        let separator = desk.look.signs.separator;
+    fn name(&self) -> &'static str {
+        "policy"
+    }
+
+    fn title(&self) -> &'static str {
+        "Policy"
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        let separator = context.look.signs.separator;
         format!("primitives selected {separator} mean of the better half")
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let Some(record) = desk.shown() else {
-            return nothing_yet(desk, area, buffer);
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let Some(record) = context.shown() else {
+            return nothing_yet(context, area, buffer);
         };
         let types = record.selection_probabilities.len();
         for (index, place) in places(area, types).into_iter().enumerate() {
-            draw_type(desk, record, index, place, buffer);
+            draw_type(context, record, index, place, buffer);
         }
     }
 
@@ -57,9 +65,9 @@ impl View for Policy {
         THROUGH_TIME
     }
 
-    fn csv(&self, desk: &Desk) -> Option<String> {
+    fn csv(&self, context: &ViewContext) -> Option<String> {
         let mut csv = String::from("generation,state_type,primitive,probability\n");
-        for record in desk.model().generations() {
+        for record in context.history().generations() {
             for (index, of) in record.selection_probabilities.iter().enumerate() {
                 for (name, share) in of.iter().flatten() {
                     let (number, name) = (record.generation, one_line(name));
@@ -71,7 +79,7 @@ impl View for Policy {
         Some(csv)
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "With which probability the policy, followed from the root down, ends in each primitive\n\
          subtask, averaged over sampled states of a type and the better half of the population\n\
          (Thesis 4.5.4): now, and over generations (Figure 4.10). A type with one primitive has\n\
@@ -104,19 +112,19 @@ fn places(area: Rect, types: usize) -> Vec<Rect> {
 }
 
 fn draw_type(
-    desk: &Desk,
+    context: &ViewContext,
     record: &GenerationRecord,
     index: usize,
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let look = &desk.look;
+    let look = &context.look;
     let line = |row: u16| Rect {
         y: area.y + row,
         height: u16::from(row < area.height),
         ..area
     };
-    let info = desk.catalogue().state_types.get(index);
+    let info = context.catalogue().state_types.get(index);
     let title = title(index, info.map_or("", |info| &info.description));
     let room = usize::from(area.width.saturating_sub(1));
     let title = fitted(&title, room, look.signs);
@@ -125,14 +133,14 @@ fn draw_type(
         put(buffer, line(0), (1, 0), &title, look.style(Paint::Title));
     }
     match &record.selection_probabilities[index] {
-        Some(of) => draw_bar(desk, of, line(bar_row), buffer),
+        Some(of) => draw_bar(context, of, line(bar_row), buffer),
         None => {
             let text = "no such state in this arena";
             put(buffer, line(bar_row), (1, 0), text, look.style(Paint::Dim));
         }
     }
     if area.height + 1 == WITH_CURVES {
-        draw_course(desk, record, index, line(2), buffer);
+        draw_course(context, record, index, line(2), buffer);
     }
     if area.height >= WITH_CURVES {
         let below = Rect {
@@ -141,13 +149,13 @@ fn draw_type(
             width: area.width.saturating_sub(1),
             height: area.height - 2,
         };
-        chart(desk, index).draw(look, below, buffer);
+        chart(context, index).draw(look, below, buffer);
     }
 }
 
 /// The course of the primitive subtask that is selected most now.
 fn draw_course(
-    desk: &Desk,
+    context: &ViewContext,
     record: &GenerationRecord,
     index: usize,
     line: Rect,
@@ -159,29 +167,29 @@ fn draw_course(
     let Some((name, _)) = of.iter().max_by(|a, b| a.1.total_cmp(b.1)) else {
         return;
     };
-    let records = desk.model().generations().iter();
+    let records = context.history().generations().iter();
     let shares = records.filter_map(|record| {
         let of = record.selection_probabilities.get(index)?.as_ref()?;
         of.get(name).copied()
     });
     let shares: Vec<_> = shares.collect();
     let columns = usize::from(line.width.saturating_sub(2));
-    let text = sparkline(&shares, [0.0, 1.0], columns, desk.look.signs);
+    let text = sparkline(&shares, [0.0, 1.0], columns, context.look.signs);
     // Not in the colour of the bar above it: the two would be one.
-    put(buffer, line, (1, 0), &text, desk.look.style(Paint::Dim));
+    put(buffer, line, (1, 0), &text, context.look.style(Paint::Dim));
 }
 
 /// The paint of a primitive subtask.
-fn paint(desk: &Desk, name: &str) -> Paint {
-    let catalogue = desk.catalogue();
+fn paint(context: &ViewContext, name: &str) -> Paint {
+    let catalogue = context.catalogue();
     let mut primitives = catalogue.primitives();
     let place = primitives.position(|primitive| primitive.name(catalogue) == name);
     Paint::series(place.unwrap_or(0))
 }
 
 /// Parts of a bar, as long as they are probable.
-fn draw_bar(desk: &Desk, of: &BTreeMap<String, f64>, line: Rect, buffer: &mut Buffer) {
-    let look = &desk.look;
+fn draw_bar(context: &ViewContext, of: &BTreeMap<String, f64>, line: Rect, buffer: &mut Buffer) {
+    let look = &context.look;
     let mut parts: Vec<_> = of.iter().filter(|(_, share)| **share >= SMALL).collect();
     parts.sort_by(|a, b| b.1.total_cmp(a.1));
     let columns = f64::from(line.width.saturating_sub(2));
@@ -190,12 +198,12 @@ fn draw_bar(desk: &Desk, of: &BTreeMap<String, f64>, line: Rect, buffer: &mut Bu
         sum += **share;
         let to = 1 + (sum.min(1.0) * columns).round() as u16;
         let style = look
-            .style(paint(desk, name))
+            .style(paint(context, name))
             .add_modifier(Modifier::REVERSED);
         let room = usize::from(to.saturating_sub(from));
         let separator = if index > 0 { "|" } else { "" };
         let room_for_label = room.saturating_sub(separator.len());
-        let text = label(desk, &one_line(name), **share, room_for_label);
+        let text = label(context, &one_line(name), **share, room_for_label);
         let text = format!("{separator}{text}");
         let text = fitted(&format!("{text:<room$}"), room, look.signs);
         from = put(buffer, line, (from, 0), &text, style);
@@ -206,7 +214,7 @@ fn draw_bar(desk: &Desk, of: &BTreeMap<String, f64>, line: Rect, buffer: &mut Bu
 const SHORT: usize = 8;
 
 /// Name and share, as much of it as there is room for: the share is read off the bar too.
-fn label(desk: &Desk, name: &str, share: f64, room: usize) -> String {
+fn label(context: &ViewContext, name: &str, share: f64, room: usize) -> String {
     if room < 3 {
         return String::new();
     }
@@ -216,13 +224,17 @@ fn label(desk: &Desk, name: &str, share: f64, room: usize) -> String {
         true => percent,
         false => String::new(),
     };
-    let name = shortened(name, room.saturating_sub(width(&percent)), desk.look.signs);
+    let name = shortened(
+        name,
+        room.saturating_sub(width(&percent)),
+        context.look.signs,
+    );
     name + &percent
 }
 
-fn chart(desk: &Desk, index: usize) -> Chart {
-    let catalogue = desk.catalogue();
-    let (records, letters) = (desk.model().generations(), catalogue.letters());
+fn chart(context: &ViewContext, index: usize) -> Chart {
+    let catalogue = context.catalogue();
+    let (records, letters) = (context.history().generations(), catalogue.letters());
     let curves = catalogue
         .primitives()
         .enumerate()
@@ -243,5 +255,5 @@ fn chart(desk: &Desk, index: usize) -> Chart {
         let mut points = curve.points.iter().flatten();
         points.any(|point| point[1] >= SMALL)
     });
-    over_generations(desk, curves.collect(), [0.0, 1.0])
+    over_generations(context, curves.collect(), [0.0, 1.0])
 }

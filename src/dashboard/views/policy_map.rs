@@ -10,14 +10,14 @@ use ratatui::text::Line;
 
 use super::shared::nobody;
 use super::view::View;
-use crate::dashboard::desk::Desk;
-use crate::dashboard::input::Effect;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::Subject;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, number, percent};
 use crate::dashboard::look::{Canvas, Layer, Paint};
 use crate::dashboard::scene::share;
 use crate::dashboard::scene::{Scene, draw_mark, draw_scene, in_proportion};
-use crate::dashboard::stage::Subject;
 use crate::lab::specimen::{MapView, PolicyCell, PolicyMap};
 
 /// Headings that keys go through.
@@ -64,7 +64,7 @@ impl Map {
     }
 
     /// What stands for a cell: a digit or a letter, and how it is painted.
-    fn sign(&self, desk: &Desk, cell: &PolicyCell, range: [f32; 2]) -> (char, Paint) {
+    fn sign(&self, context: &ViewContext, cell: &PolicyCell, range: [f32; 2]) -> (char, Paint) {
         if self.by_value {
             let level = (share(cell.value, range) * 10.0).clamp(0.0, 9.0) as u32;
             let paint = match level {
@@ -74,10 +74,10 @@ impl Map {
             };
             return (char::from_digit(level, 10).unwrap_or(' '), paint);
         }
-        let mut primitives = desk.catalogue().primitives();
+        let mut primitives = context.catalogue().primitives();
         let place = primitives.position(|primitive| primitive == cell.primitive);
         let place = place.unwrap_or(0);
-        let letter = desk
+        let letter = context
             .catalogue()
             .letters()
             .get(place)
@@ -93,13 +93,13 @@ impl Map {
     /// Draws the cells where there is no wall.
     fn shade(
         &self,
-        desk: &Desk,
+        context: &ViewContext,
         map: &PolicyMap,
         canvas: &Canvas<'_>,
         place: Rect,
         buffer: &mut Buffer,
     ) {
-        let (look, extent) = (&desk.look, desk.scenery().extent);
+        let (look, extent) = (&context.look, context.scenery().extent);
         let range = map.values().unwrap_or_default();
         let clipped = place.intersection(buffer.area);
         for position in clipped.positions() {
@@ -107,7 +107,7 @@ impl Map {
             let is_free = buffer[position].symbol() == " ";
             let cell = cell_at(map, canvas.place(column, row), extent).filter(|_| is_free);
             let Some(cell) = cell else { continue };
-            let (sign, paint) = self.sign(desk, cell, range);
+            let (sign, paint) = self.sign(context, cell, range);
             let style = look.style(paint);
             // Shaded where there are colours: letters then need not be everywhere.
             let shaded = !self.by_value && style.fg.is_some() && cell.probability >= CLEAR;
@@ -121,48 +121,48 @@ impl Map {
         }
     }
 
-    fn legend(&self, desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
-        let look = &desk.look;
+    fn legend(&self, context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
+        let look = &context.look;
         let keys = |action| {
-            let hint = desk.keys.hint(action, look.signs);
+            let hint = context.keys.hint(action, look.signs);
             hint.map_or(String::new(), |(keys, _)| keys)
         };
         let mut lines = Vec::new();
-        if desk.scenery().grid.is_none() {
+        if context.scenery().grid.is_none() {
             let degrees = self.heading().to_degrees().round();
             let eighth = (self.heading / (HEADINGS / 8)) % 8;
             let text = format!(
                 "heading {degrees:.0}{} {}",
                 look.signs.degrees, look.signs.headings[eighth]
             );
-            lines.push(with_keys(desk, &text, &keys(Action::Left)));
+            lines.push(with_keys(context, &text, &keys(Action::Left)));
         }
-        let variants = desk.bench.variants();
+        let variants = context.bench.variants();
         if let Some(variant) = variants.get(self.variant) {
-            lines.push(with_keys(desk, variant, &keys(Action::Up)));
+            lines.push(with_keys(context, variant, &keys(Action::Up)));
         }
         let mode = if self.by_value { "value" } else { "policy" };
-        lines.push(with_keys(desk, mode, &keys(Action::Mode)));
+        lines.push(with_keys(context, mode, &keys(Action::Mode)));
         lines.push(Line::default());
         match self.by_value {
-            true => lines.extend(value_legend(desk, map)),
-            false => lines.extend(policy_legend(desk, map)),
+            true => lines.extend(value_legend(context, map)),
+            false => lines.extend(policy_legend(context, map)),
         }
         lines.push(Line::default());
-        lines.extend(type_legend(desk, map));
+        lines.extend(type_legend(context, map));
         lines
     }
 }
 
-fn with_keys(desk: &Desk, text: &str, keys: &str) -> Line<'static> {
-    Pen::new(&desk.look)
+fn with_keys(context: &ViewContext, text: &str, keys: &str) -> Line<'static> {
+    Pen::new(&context.look)
         .cell(text, 20, Paint::Title)
         .text(format!(" {keys}"), Paint::Key)
         .line()
 }
 
-fn policy_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
-    let catalogue = desk.catalogue();
+fn policy_legend(context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
+    let catalogue = context.catalogue();
     let free = map.cells.iter().flatten().count().max(1);
     let signs = catalogue.letters().into_iter().zip(catalogue.primitives());
     let mut lines: Vec<_> = signs
@@ -176,27 +176,27 @@ fn policy_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
             } else {
                 Paint::Dim
             };
-            Pen::new(&desk.look)
+            Pen::new(&context.look)
                 .text(format!("{letter} "), paint)
                 .cell(primitive.name(catalogue), 17, paint)
                 .right(&percent(share), 6, Paint::Text)
                 .line()
         })
         .collect();
-    let note = match desk.scenery().grid {
+    let note = match context.scenery().grid {
         Some(_) => "in the cells: the greedy action",
         None => "small letter: less than 2 in 3",
     };
-    lines.push(Pen::new(&desk.look).text(note, Paint::Dim).line());
+    lines.push(Pen::new(&context.look).text(note, Paint::Dim).line());
     lines
 }
 
-fn value_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
+fn value_legend(context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
     let [low, high] = map.values().unwrap_or_default();
     let ends = [("0", Paint::Worst, low), ("9", Paint::Best, high)];
-    let head = Pen::new(&desk.look).text("V(root), expected reward", Paint::Dim);
+    let head = Pen::new(&context.look).text("V(root), expected reward", Paint::Dim);
     let ends = ends.map(|(digit, paint, value)| {
-        Pen::new(&desk.look)
+        Pen::new(&context.look)
             .text(format!("{digit} "), paint)
             .right(&number(value), 9, Paint::Text)
             .line()
@@ -205,9 +205,9 @@ fn value_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
 }
 
 /// How much of the arena each state type is.
-fn type_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
+fn type_legend(context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
     let free = map.cells.iter().flatten().count().max(1);
-    let types = desk.catalogue().types();
+    let types = context.catalogue().types();
     let shares = types.map(|state_type| {
         let cells = map.cells.iter().flatten();
         let count = cells.filter(|cell| cell.state_type == state_type).count();
@@ -217,7 +217,7 @@ fn type_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
         .filter(|(_, count)| *count > 0)
         .map(|(state_type, count)| {
             let text = format!("state type {}", state_type.number());
-            Pen::new(&desk.look)
+            Pen::new(&context.look)
                 .cell(&text, 19, Paint::Dim)
                 .right(&percent(count as f64 / free as f64), 6, Paint::Dim)
                 .line()
@@ -226,15 +226,15 @@ fn type_legend(desk: &Desk, map: &PolicyMap) -> Vec<Line<'static>> {
 }
 
 /// Map and legend.
-fn areas(desk: &Desk, area: Rect) -> (Rect, Rect) {
+fn areas(context: &ViewContext, area: Rect) -> (Rect, Rect) {
     let legend = LEGEND.min(area.width / 2);
     let room = Rect {
         width: area.width - legend,
         ..area
     };
-    let map = match desk.scenery().grid {
+    let map = match context.scenery().grid {
         Some(_) => room,
-        None => in_proportion(room, desk.scenery().extent),
+        None => in_proportion(room, context.scenery().extent),
     };
     let map = Rect { x: area.x, ..map };
     let legend = Rect {
@@ -246,49 +246,61 @@ fn areas(desk: &Desk, area: Rect) -> (Rect, Rect) {
 }
 
 impl View for Map {
-    fn caption(&self, desk: &Desk) -> String {
-        let subject = desk.stage.subject();
+    fn name(&self) -> &'static str {
+        "policy-map"
+    }
+
+    fn title(&self) -> &'static str {
+        "Policy map"
+    }
+
+    fn needs_rollout(&self) -> bool {
+        true
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        let subject = context.player.subject();
         subject.map_or(String::new(), |subject| subject.to_string())
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let look = &desk.look;
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let look = &context.look;
         let Some(map) = self.map() else {
-            return nobody(desk, area, buffer);
+            return nobody(context, area, buffer);
         };
-        let (place, legend) = areas(desk, area);
-        let scenery = desk.scenery();
+        let (place, legend) = areas(context, area);
+        let scenery = context.scenery();
         if scenery.grid.is_some() {
             let scene = Scene {
                 marks: &map.marks,
                 cells: Some(map),
                 ..Scene::default()
             };
-            draw_scene(desk, &scene, place, buffer);
-            return draw_lines(look, &self.legend(desk, map), 0, legend, buffer);
+            draw_scene(context, &scene, place, buffer);
+            return draw_lines(look, &self.legend(context, map), 0, legend, buffer);
         }
         let mut canvas = Canvas::new(look, place, [0.0, 0.0], scenery.extent);
         for [from, to] in &scenery.walls {
             canvas.line(*from, *to, Layer::Wall, Paint::Wall);
         }
         canvas.finish(buffer);
-        self.shade(desk, map, &canvas, place, buffer);
+        self.shade(context, map, &canvas, place, buffer);
         for mark in scenery.places.iter().chain(&map.marks) {
             draw_mark(look, &canvas, mark, place, buffer);
         }
-        draw_lines(look, &self.legend(desk, map), 0, legend, buffer);
+        draw_lines(look, &self.legend(context, map), 0, legend, buffer);
     }
 
     fn hints(&self) -> &'static [Action] {
         &[Action::Mode, Action::Best, Action::ViewInspector]
     }
 
-    fn can(&self, _desk: &Desk, action: Action) -> bool {
+    fn can(&self, _desk: &ViewContext, action: Action) -> bool {
         action != Action::Mode || self.made.is_some()
     }
 
-    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
-        let variants = desk.bench.variants().len().max(1);
+    fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
+        let variants = context.bench.variants().len().max(1);
         match action {
             Action::Left => self.heading = (self.heading + 1) % HEADINGS,
             Action::Right => self.heading = (self.heading + HEADINGS - 1) % HEADINGS,
@@ -300,16 +312,17 @@ impl View for Map {
         Some(Vec::new())
     }
 
-    fn prepare(&mut self, desk: &Desk) {
-        let Some((specimen, subject)) = desk.stage.specimen().zip(desk.stage.subject()) else {
+    fn prepare(&mut self, context: &ViewContext) {
+        let Some((specimen, subject)) = context.player.specimen().zip(context.player.subject())
+        else {
             self.made = None;
             return;
         };
-        let (width, height) = desk.size;
+        let (width, height) = context.size;
         let inside = Rect::new(0, 0, width.saturating_sub(2), height.saturating_sub(4));
-        let (place, _) = areas(desk, inside);
+        let (place, _) = areas(context, inside);
         let cells = [place.width, place.height].map(usize::from);
-        let [columns, rows] = desk.scenery().grid.unwrap_or(cells);
+        let [columns, rows] = context.scenery().grid.unwrap_or(cells);
         let view = MapView {
             heading: self.heading(),
             variant: self.variant,
@@ -318,14 +331,14 @@ impl View for Map {
         };
         let made = self.made.as_ref();
         if made.is_none_or(|made| made.subject != subject || made.map.view != view) {
-            let map = desk.bench.policy_map(specimen, view);
+            let map = context.bench.policy_map(specimen, view);
             self.made = Some(Made { subject, map });
         }
     }
 
-    fn csv(&self, desk: &Desk) -> Option<String> {
+    fn csv(&self, context: &ViewContext) -> Option<String> {
         let map = self.map()?;
-        let [width, height] = desk.scenery().extent;
+        let [width, height] = context.scenery().extent;
         let MapView { columns, rows, .. } = map.view;
         let mut csv = String::from("x,y,state_type,primitive,probability,value\n");
         for (index, cell) in map.cells.iter().enumerate() {
@@ -339,7 +352,7 @@ impl View for Map {
                 x * width / columns as f64,
                 y * height / rows as f64,
                 cell.state_type.number(),
-                desk.catalogue().subtask(cell.primitive).name,
+                context.catalogue().subtask(cell.primitive).name,
                 cell.probability,
                 cell.value
             );
@@ -347,7 +360,7 @@ impl View for Map {
         Some(csv)
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "What the selected individual would do at every place, for one heading and load: its\n\
          policy is followed from the root down, and the letter is that of the primitive subtask\n\
          that it most probably ends in. As values: V(root), from 0, the lowest, to 9. Where the\n\

@@ -7,11 +7,12 @@ use ratatui::layout::{Position, Rect};
 
 use super::shared::{by_chance, nothing_yet, origin};
 use super::view::View;
-use crate::dashboard::desk::{Chosen, Desk};
-use crate::dashboard::input::Effect;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::{Chosen, ViewContext};
+use crate::dashboard::context::{Clicked, line_at};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, one_line, put, wrapped};
-use crate::dashboard::mouse::{Clicked, line_at};
+use crate::dashboard::view_id::ViewId;
 use crate::evolution::RankedRecord;
 
 /// All individuals of a generation, best first.
@@ -139,14 +140,14 @@ fn failed(individual: &RankedRecord) -> usize {
 }
 
 fn draw_individual(
-    desk: &Desk,
+    context: &ViewContext,
     columns: &[(Column, &str, u16)],
     individual: &RankedRecord,
     is_selected: bool,
     line: Rect,
     buffer: &mut Buffer,
 ) {
-    let look = &desk.look;
+    let look = &context.look;
     let paint = match (is_selected, individual.rank) {
         (true, _) => Paint::Selected,
         (false, 1) => Paint::Best,
@@ -176,11 +177,11 @@ fn draw_individual(
 }
 
 /// Writes the whole hierarchy of the selected individual, as much of it as there is room for.
-fn draw_whole(desk: &Desk, area: Rect, buffer: &mut Buffer) {
-    let Some(individual) = desk.selected() else {
+fn draw_whole(context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+    let Some(individual) = context.selected() else {
         return;
     };
-    let look = &desk.look;
+    let look = &context.look;
     let columns = usize::from(area.width.saturating_sub(2));
     let text = format!("{}: {}", individual.id, one_line(&individual.tree));
     let lines = wrapped(&text, columns, "  ");
@@ -191,8 +192,8 @@ fn draw_whole(desk: &Desk, area: Rect, buffer: &mut Buffer) {
 }
 
 impl Population {
-    fn sorted<'d>(&self, desk: &'d Desk) -> Vec<&'d RankedRecord> {
-        let Some(record) = desk.shown() else {
+    fn sorted<'d>(&self, context: &'d ViewContext) -> Vec<&'d RankedRecord> {
+        let Some(record) = context.shown() else {
             return Vec::new();
         };
         let mut individuals: Vec<_> = record.individuals.iter().collect();
@@ -204,9 +205,9 @@ impl Population {
     }
 
     /// The individuals that there is room for below the head, the selected one among them.
-    fn visible<'d>(&self, desk: &'d Desk, area: Rect) -> Vec<&'d RankedRecord> {
-        let sorted = self.sorted(desk);
-        let selected = desk.selected().map(|individual| individual.id);
+    fn visible<'d>(&self, context: &'d ViewContext, area: Rect) -> Vec<&'d RankedRecord> {
+        let sorted = self.sorted(context);
+        let selected = context.selected().map(|individual| individual.id);
         let is_selected = |individual: &&RankedRecord| Some(individual.id) == selected;
         let here = sorted.iter().position(is_selected).unwrap_or(0);
         let rows = usize::from(area.height.saturating_sub(1));
@@ -218,12 +219,12 @@ impl Population {
     /// The heads of the columns; the one that the table is sorted by says so.
     fn draw_head(
         &self,
-        desk: &Desk,
+        context: &ViewContext,
         columns: &[(Column, &str, u16)],
         area: Rect,
         buffer: &mut Buffer,
     ) {
-        let look = &desk.look;
+        let look = &context.look;
         let mut at: u16 = 1;
         for (column, head, width) in columns {
             let sorted = *column == self.by;
@@ -253,9 +254,9 @@ impl Population {
     }
 
     /// Selects the individual some lines further down.
-    fn select(&self, desk: &mut Desk, by: i64) {
-        let sorted = self.sorted(desk);
-        let selected = desk.selected().map(|individual| individual.id);
+    fn select(&self, context: &mut ViewContext, by: i64) {
+        let sorted = self.sorted(context);
+        let selected = context.selected().map(|individual| individual.id);
         let here = sorted
             .iter()
             .position(|individual| Some(individual.id) == selected);
@@ -265,18 +266,30 @@ impl Population {
         });
         let chosen = sorted.get(next as usize).map(|individual| individual.id);
         if let Some(id) = chosen {
-            desk.chosen = Chosen::Id(id);
+            context.chosen = Chosen::Id(id);
         }
     }
 }
 
 impl View for Population {
-    fn caption(&self, desk: &Desk) -> String {
-        desk.shown().map_or(String::new(), |record| {
+    fn name(&self) -> &'static str {
+        "population"
+    }
+
+    fn title(&self) -> &'static str {
+        "Population"
+    }
+
+    fn opens(&self) -> Option<ViewId> {
+        Some(ViewId::Inspector)
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        context.shown().map_or(String::new(), |record| {
             let count = record.individuals.len();
-            let separator = desk.look.signs.separator;
+            let separator = context.look.signs.separator;
             let generation = record.generation;
-            match by_chance(desk) {
+            match by_chance(context) {
                 // What matters most first, where there is little room.
                 Some(ranked) => format!("{ranked} {separator} generation {generation}"),
                 None => format!("generation {generation} {separator} {count} individuals"),
@@ -284,21 +297,21 @@ impl View for Population {
         })
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        if desk.shown().is_none() {
-            return nothing_yet(desk, area, buffer);
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        if context.shown().is_none() {
+            return nothing_yet(context, area, buffer);
         }
         let columns = columns(area.width);
-        self.draw_head(desk, &columns, area, buffer);
-        let selected = desk.selected().map(|individual| individual.id);
-        for (row, individual) in self.visible(desk, area).into_iter().enumerate() {
+        self.draw_head(context, &columns, area, buffer);
+        let selected = context.selected().map(|individual| individual.id);
+        for (row, individual) in self.visible(context, area).into_iter().enumerate() {
             let line = Rect {
                 y: area.y + 1 + row as u16,
                 height: 1,
                 ..area
             };
             draw_individual(
-                desk,
+                context,
                 &columns,
                 individual,
                 Some(individual.id) == selected,
@@ -307,7 +320,8 @@ impl View for Population {
             );
         }
         let used = area.height.min(
-            desk.shown()
+            context
+                .shown()
                 .map_or(0, |shown| shown.individuals.len() as u16)
                 + 2,
         );
@@ -316,15 +330,15 @@ impl View for Population {
             height: area.height - used,
             ..area
         };
-        draw_whole(desk, rest, buffer);
+        draw_whole(context, rest, buffer);
     }
 
     fn hints(&self) -> &'static [Action] {
         &[Action::Down, Action::Open, Action::Sort, Action::Reverse]
     }
 
-    fn can(&self, desk: &Desk, action: Action) -> bool {
-        let individuals = desk.shown().map_or(0, |record| record.individuals.len());
+    fn can(&self, context: &ViewContext, action: Action) -> bool {
+        let individuals = context.shown().map_or(0, |record| record.individuals.len());
         match action {
             Action::Down => individuals > 1,
             Action::Open => individuals > 0,
@@ -332,15 +346,15 @@ impl View for Population {
         }
     }
 
-    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
-        let page = i64::from(desk.size.1 / 2).max(1);
+    fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
+        let page = i64::from(context.size.1 / 2).max(1);
         match action {
-            Action::Up => self.select(desk, -1),
-            Action::Down => self.select(desk, 1),
-            Action::PageUp => self.select(desk, -page),
-            Action::PageDown => self.select(desk, page),
-            Action::Top => self.select(desk, i64::MIN),
-            Action::Bottom => self.select(desk, i64::MAX),
+            Action::Up => self.select(context, -1),
+            Action::Down => self.select(context, 1),
+            Action::PageUp => self.select(context, -page),
+            Action::PageDown => self.select(context, page),
+            Action::Top => self.select(context, i64::MIN),
+            Action::Bottom => self.select(context, i64::MAX),
             Action::Sort => self.by = self.by.next(),
             Action::Reverse => self.reversed = !self.reversed,
             _ => return None,
@@ -348,21 +362,21 @@ impl View for Population {
         Some(Vec::new())
     }
 
-    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> Clicked {
+    fn click(&mut self, context: &mut ViewContext, area: Rect, at: Position) -> Clicked {
         let line = line_at(at, area, 1);
-        let visible = self.visible(desk, area);
+        let visible = self.visible(context, area);
         let clicked = line.and_then(|line| visible.get(line)).map(|one| one.id);
-        let Some(selected) = desk.selected().map(|individual| individual.id) else {
+        let Some(selected) = context.selected().map(|individual| individual.id) else {
             return Clicked::Nothing;
         };
-        Clicked::on(clicked, selected, |id| desk.chosen = Chosen::Id(id))
+        Clicked::on(clicked, selected, |id| context.chosen = Chosen::Id(id))
     }
 
-    fn csv(&self, desk: &Desk) -> Option<String> {
+    fn csv(&self, context: &ViewContext) -> Option<String> {
         let mut csv = String::from(
             "rank,id,fitness_steps,trials,composites,primitives,difference,origin,tree\n",
         );
-        for individual in self.sorted(desk) {
+        for individual in self.sorted(context) {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 csv,
@@ -381,7 +395,7 @@ impl View for Population {
         Some(csv)
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "All individuals of the generation, best first. steps: mean time steps of a scored trial,\n\
          the fitness; failed: trials that ended at the limit; comp, prim: composite and distinct\n\
          primitive subtasks; diff: structural difference to the best (Thesis 4.5.2). origin: a\n\

@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::dashboard::desk::{Activity, Desk};
+use crate::dashboard::context::{Activity, ViewContext};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Paint, axis_end, fitted, put};
 use crate::evolution::Origin;
@@ -21,58 +21,62 @@ pub(super) const THROUGH_TIME: &[Action] = &[
 
 /// Curves over the generations so far, the one shown marked. While there are more to come the
 /// axis has room for them.
-pub(super) fn over_generations(desk: &Desk, curves: Vec<Curve>, least: [f64; 2]) -> Chart {
+pub(super) fn over_generations(
+    context: &ViewContext,
+    curves: Vec<Curve>,
+    least: [f64; 2],
+) -> Chart {
     let mut chart = Chart::of(curves, least);
-    let shown = desk.shown().map(|record| record.generation);
+    let shown = context.shown().map(|record| record.generation);
     chart.cursor = shown.map(|number| number as f64);
-    let is_over = matches!(desk.activity(), Activity::Finished | Activity::Stopped);
-    let latest = desk.model().latest().map(|record| record.generation);
+    let is_over = matches!(context.activity(), Activity::Finished | Activity::Stopped);
+    let latest = context.history().latest().map(|record| record.generation);
     if let (false, Some(latest)) = (is_over, latest) {
-        let limit = desk.scenario().evolution.generation_limit;
+        let limit = context.scenario().evolution.generation_limit;
         chart.across[1] = axis_end(latest, limit) as f64;
     }
     chart
 }
 
 /// That ranks do not tell who is better, where they do not.
-pub(super) fn by_chance(desk: &Desk) -> Option<&'static str> {
-    let selection = desk.scenario().evolution.selection;
+pub(super) fn by_chance(context: &ViewContext) -> Option<&'static str> {
+    let selection = context.scenario().evolution.selection;
     (selection == Selection::Random).then_some("ranked by chance")
 }
 
 /// How fast the rollout goes, and whether it does.
-pub(super) fn pace(desk: &Desk) -> String {
-    let speed = desk.stage.speed();
-    match desk.stage.halted() {
+pub(super) fn pace(context: &ViewContext) -> String {
+    let speed = context.player.speed();
+    match context.player.halted() {
         true => format!("halted, {speed}x"),
         false => format!("{speed}x"),
     }
 }
 
 /// Says why there is no individual to look at.
-pub(super) fn nobody(desk: &Desk, area: Rect, buffer: &mut Buffer) {
-    let text = desk
-        .stage
-        .refused()
+pub(super) fn nobody(context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+    let text = context
+        .player
+        .load_error()
         .unwrap_or("no individual has lived yet");
     let room = usize::from(area.width.saturating_sub(1));
-    let text = fitted(text, room, desk.look.signs);
-    put(buffer, area, (1, 0), &text, desk.look.style(Paint::Dim));
+    let text = fitted(text, room, context.look.signs);
+    put(buffer, area, (1, 0), &text, context.look.style(Paint::Dim));
 }
 
 /// Says that there is nothing to see yet.
-pub(super) fn nothing_yet(desk: &Desk, area: Rect, buffer: &mut Buffer) {
+pub(super) fn nothing_yet(context: &ViewContext, area: Rect, buffer: &mut Buffer) {
     let room = usize::from(area.width.saturating_sub(1));
-    let text = fitted("no generation has lived yet", room, desk.look.signs);
-    put(buffer, area, (1, 0), &text, desk.look.style(Paint::Dim));
+    let text = fitted("no generation has lived yet", room, context.look.signs);
+    put(buffer, area, (1, 0), &text, context.look.style(Paint::Dim));
 }
 
 /// What is the case besides the agent's place, where the state type does not tell: in worlds
 /// of cells.
-pub(super) fn case<'d>(desk: &'d Desk, snapshot: &Snapshot) -> Option<&'d str> {
-    desk.scenery().grid?;
-    let is_done = snapshot.state_type == desk.catalogue().terminal();
-    let variants = desk.bench.variants();
+pub(super) fn case<'d>(context: &'d ViewContext, snapshot: &Snapshot) -> Option<&'d str> {
+    context.scenery().grid?;
+    let is_done = snapshot.state_type == context.catalogue().terminal();
+    let variants = context.bench.variants();
     let case = variants.get(snapshot.variant).filter(|_| !is_done);
     case.filter(|_| variants.len() > 1).map(String::as_str)
 }

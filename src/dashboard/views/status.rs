@@ -7,7 +7,7 @@ use ratatui::layout::Rect;
 
 use super::shared::by_chance;
 use super::view::View;
-use crate::dashboard::desk::{Desk, Mode};
+use crate::dashboard::context::{Mode, ViewContext};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put, width};
 use crate::lab::Ending;
@@ -30,11 +30,19 @@ pub(super) struct Status;
 const VALUES: u16 = 13;
 
 impl View for Status {
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let look = &desk.look;
+    fn name(&self) -> &'static str {
+        "status"
+    }
+
+    fn title(&self) -> &'static str {
+        "Status"
+    }
+
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let look = &context.look;
         let room = usize::from(area.width.saturating_sub(VALUES));
         let mut row = 0;
-        for (name, value, paint) in facts(desk, room) {
+        for (name, value, paint) in facts(context, room) {
             put(buffer, area, (1, row), name, look.style(Paint::Dim));
             let value = match name {
                 // Of a path the end tells more.
@@ -45,7 +53,7 @@ impl View for Status {
             row += 1;
         }
         let left = area.height.saturating_sub(row + 1);
-        let log = desk.log();
+        let log = context.log();
         let skipped = log.len().saturating_sub(usize::from(left));
         for (index, (text, when)) in log.iter().skip(skipped).enumerate() {
             let at = row + 1 + index as u16;
@@ -61,7 +69,7 @@ impl View for Status {
         &[Action::Checkpoint, Action::Stop]
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "What the run is doing. A control step is one time step of one individual. The time left\n\
          is that to the generation limit; evolution ends as soon as the better half of the\n\
          population has one structure. Pausing stops evolution; freezing holds what you see\n\
@@ -72,12 +80,12 @@ impl View for Status {
 /// A name, a value, and how the value is painted.
 type Fact = (&'static str, String, Paint);
 
-fn facts(desk: &Desk, room: usize) -> Vec<Fact> {
-    let scenario = desk.scenario();
-    let (sign, word, paint) = desk.activity_mark();
+fn facts(context: &ViewContext, room: usize) -> Vec<Fact> {
+    let scenario = context.scenario();
+    let (sign, word, paint) = context.activity_mark();
     let mut facts = vec![("evolution", format!("{sign} {word}"), paint)];
-    facts.extend(progress(desk, room));
-    let saved = match desk.live().checkpoint() {
+    facts.extend(progress(context, room));
+    let saved = match context.live_history().checkpoint() {
         Some(generation) => format!("after generation {generation}"),
         None => String::from("none yet"),
     };
@@ -90,15 +98,15 @@ fn facts(desk: &Desk, room: usize) -> Vec<Fact> {
     facts.extend([
         ("checkpoint", saved, Paint::Text),
         ("scenario", scenario.name.clone(), Paint::Text),
-        ("seed", desk.bench.seed().to_string(), Paint::Text),
+        ("seed", context.bench.seed().to_string(), Paint::Text),
         ("population", survivors, Paint::Text),
         ("trials", trials, Paint::Text),
-        ("folder", desk.folder.clone(), Paint::Text),
+        ("folder", context.folder.clone(), Paint::Text),
     ]);
-    if by_chance(desk).is_some() {
+    if by_chance(context).is_some() {
         facts.push(("ranks", String::from("drawn by chance"), Paint::Notice));
     }
-    facts.extend(changed(desk, room));
+    facts.extend(changed(context, room));
     facts
 }
 
@@ -116,14 +124,14 @@ fn in_columns(setting: &str, room: usize) -> String {
 }
 
 /// In what the scenario departs from the embedded one of its name.
-fn changed(desk: &Desk, room: usize) -> Vec<Fact> {
+fn changed(context: &ViewContext, room: usize) -> Vec<Fact> {
     let names = std::iter::once("changed").chain(std::iter::repeat(""));
-    let told = desk.changed.iter().take(TOLD);
+    let told = context.changed.iter().take(TOLD);
     let told = names
         .zip(told)
         .map(|(name, setting)| (name, in_columns(setting, room), Paint::Text));
     let mut facts: Vec<_> = told.collect();
-    match desk.changed.len().saturating_sub(TOLD) {
+    match context.changed.len().saturating_sub(TOLD) {
         0 => {}
         more => facts.push(("", format!("and {more} more"), Paint::Dim)),
     }
@@ -131,9 +139,9 @@ fn changed(desk: &Desk, room: usize) -> Vec<Fact> {
 }
 
 /// How far evolution is, and how fast.
-fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
-    let model = desk.live();
-    let limit = desk.scenario().evolution.generation_limit;
+fn progress(context: &ViewContext, room: usize) -> Vec<Fact> {
+    let model = context.live_history();
+    let limit = context.scenario().evolution.generation_limit;
     let lived = model.latest().map_or(0, |record| record.generation);
     let mut facts = vec![(
         "generation",
@@ -144,7 +152,7 @@ fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
         let (lived, all) = (progress.lived, progress.population);
         let (name, text) = match progress.generation {
             0 => ("learning", String::from("primitive subtasks")),
-            _ => ("individuals", bar(desk, lived, all, room)),
+            _ => ("individuals", bar(context, lived, all, room)),
         };
         facts.push((name, text, Paint::Text));
     }
@@ -161,11 +169,14 @@ fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
             let text = String::from("generation limit");
             facts.push(("ended", text, Paint::Notice));
         }
-        None if desk.mode != Mode::Replay => {
-            let rate = desk.pace.steps_per_second();
+        None if context.mode != Mode::Replay => {
+            let rate = context.pace.steps_per_second();
             let rate = rate.map_or(String::from("?"), |rate| thousands(rate as u64));
             facts.push(("speed", format!("{rate} steps/s"), Paint::Text));
-            let left = desk.pace.time_to(limit).map_or(String::from("?"), duration);
+            let left = context
+                .pace
+                .time_to(limit)
+                .map_or(String::from("?"), duration);
             facts.push(("time left", format!("at most {left}"), Paint::Text));
         }
         None => {}
@@ -174,11 +185,11 @@ fn progress(desk: &Desk, room: usize) -> Vec<Fact> {
 }
 
 /// A bar with its numbers.
-fn bar(desk: &Desk, part: usize, whole: usize, room: usize) -> String {
+fn bar(context: &ViewContext, part: usize, whole: usize, room: usize) -> String {
     let numbers = format!(" {part} of {whole}");
     let columns = room.saturating_sub(numbers.len() + 1).min(24);
     let filled = (columns * part.min(whole)).checked_div(whole).unwrap_or(0);
-    let signs = desk.look.signs;
+    let signs = context.look.signs;
     let unfilled = signs.unfilled.repeat(columns - filled);
     format!("{}{unfilled}{numbers}", signs.filled.repeat(filled))
 }

@@ -8,12 +8,13 @@ use ratatui::layout::{Position, Rect};
 
 use super::shared::{nothing_yet, pace};
 use super::view::View;
-use crate::dashboard::desk::Desk;
-use crate::dashboard::input::Effect;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::ViewContext;
+use crate::dashboard::context::{Clicked, line_at};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{last_start, mark_more};
 use crate::dashboard::look::{Paint, fitted, one_line, put};
-use crate::dashboard::mouse::{Clicked, line_at};
+use crate::dashboard::view_id::ViewId;
 use crate::hierarchy::{Tree, to_dot};
 use table::Table;
 
@@ -36,36 +37,52 @@ use table::Table;
 pub(super) struct Hierarchy;
 
 impl View for Hierarchy {
-    fn caption(&self, desk: &Desk) -> String {
-        let looked_at = desk.looked_at();
-        looked_at.map_or(String::new(), |(generation, individual)| {
-            let separator = desk.look.signs.separator;
+    fn name(&self) -> &'static str {
+        "hierarchy"
+    }
+
+    fn title(&self) -> &'static str {
+        "Hierarchy"
+    }
+
+    fn needs_rollout(&self) -> bool {
+        true
+    }
+
+    fn opens(&self) -> Option<ViewId> {
+        Some(ViewId::Inspector)
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        let inspected = context.inspected();
+        inspected.map_or(String::new(), |(generation, individual)| {
+            let separator = context.look.signs.separator;
             let (id, rank) = (individual.id, individual.rank);
-            let pace = match desk.stage.rollout() {
-                Some(_) => format!(" {separator} {}", pace(desk)),
+            let pace = match context.player.rollout() {
+                Some(_) => format!(" {separator} {}", pace(context)),
                 None => String::new(),
             };
             format!("id {id}, gen {generation} {separator} rank {rank}{pace}")
         })
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let Some((_, individual)) = desk.looked_at() else {
-            return nothing_yet(desk, area, buffer);
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let Some((_, individual)) = context.inspected() else {
+            return nothing_yet(context, area, buffer);
         };
-        let look = &desk.look;
-        let Some(tree) = desk.tree(individual) else {
+        let look = &context.look;
+        let Some(tree) = context.tree(individual) else {
             let text = one_line(&individual.tree);
             let text = fitted(&text, usize::from(area.width), look.signs);
             put(buffer, area, (1, 0), &text, look.style(Paint::Bad));
             return;
         };
         let nodes = tree.nodes().len();
-        let table = Table::of(desk, individual, &tree, area.width);
-        table.draw_head(desk, area, buffer);
-        let (place, skipped) = place_of_tree(desk, &tree, area);
+        let table = Table::of(context, individual, &tree, area.width);
+        table.draw_head(context, area, buffer);
+        let (place, skipped) = place_of_tree(context, &tree, area);
         for (row, node) in (skipped..nodes).take(place.height.into()).enumerate() {
-            table.draw_node(desk, &tree, node, row as u16, place, buffer);
+            table.draw_node(context, &tree, node, row as u16, place, buffer);
         }
         let below = nodes.saturating_sub(skipped + usize::from(place.height));
         mark_more(look, [skipped, below], place, buffer);
@@ -75,7 +92,7 @@ impl View for Hierarchy {
             height: area.height - used,
             ..area
         };
-        story::draw(desk, &tree, individual, rest, buffer);
+        story::draw(context, &tree, individual, rest, buffer);
     }
 
     fn hints(&self) -> &'static [Action] {
@@ -88,8 +105,10 @@ impl View for Hierarchy {
         ]
     }
 
-    fn can(&self, desk: &Desk, action: Action) -> bool {
-        let nodes = desk.looked_at_tree().map_or(0, |tree| tree.nodes().len());
+    fn can(&self, context: &ViewContext, action: Action) -> bool {
+        let nodes = context
+            .inspected_tree()
+            .map_or(0, |tree| tree.nodes().len());
         match action {
             Action::Down => nodes > 1,
             Action::Open => nodes > 0,
@@ -97,11 +116,11 @@ impl View for Hierarchy {
         }
     }
 
-    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
-        let tree = desk.looked_at_tree()?;
+    fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
+        let tree = context.inspected_tree()?;
         let last = tree.nodes().len().saturating_sub(1);
-        let page = usize::from(desk.size.1 / 2);
-        let here = desk.node_in(&tree);
+        let page = usize::from(context.size.1 / 2);
+        let here = context.node_in(&tree);
         let there = match action {
             Action::Up => here.saturating_sub(1),
             Action::Down => here + 1,
@@ -111,29 +130,29 @@ impl View for Hierarchy {
             Action::Bottom => last,
             _ => return None,
         };
-        desk.node = there.min(last);
+        context.node = there.min(last);
         Some(Vec::new())
     }
 
-    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> Clicked {
-        let Some(tree) = desk.looked_at_tree() else {
+    fn click(&mut self, context: &mut ViewContext, area: Rect, at: Position) -> Clicked {
+        let Some(tree) = context.inspected_tree() else {
             return Clicked::Nothing;
         };
-        let (place, skipped) = place_of_tree(desk, &tree, area);
+        let (place, skipped) = place_of_tree(context, &tree, area);
         let node = line_at(at, place, 0).map(|line| line + skipped);
         let node = node.filter(|node| *node < tree.nodes().len());
-        Clicked::on(node, desk.node_in(&tree), |node| desk.node = node)
+        Clicked::on(node, context.node_in(&tree), |node| context.node = node)
     }
 
-    fn csv(&self, desk: &Desk) -> Option<String> {
-        let (_, individual) = desk.looked_at()?;
-        let tree = desk.tree(individual)?;
-        let table = Table::of(desk, individual, &tree, u16::MAX);
+    fn csv(&self, context: &ViewContext) -> Option<String> {
+        let (_, individual) = context.inspected()?;
+        let tree = context.tree(individual)?;
+        let table = Table::of(context, individual, &tree, u16::MAX);
         let mut csv = String::from("node,parent,subtask,state_types,temperature,invoked\n");
         for (index, node) in tree.nodes().iter().enumerate() {
             let parent = node.parent;
             let parent = parent.map_or(String::new(), |parent| parent.to_string());
-            let subtask = desk.catalogue().subtask(node.subtask);
+            let subtask = context.catalogue().subtask(node.subtask);
             let types = subtask.active.to_string().replace(',', " ");
             let [temperature, visits] = table.numbers(index);
             csv.push_str(&format!(
@@ -144,11 +163,11 @@ impl View for Hierarchy {
         Some(csv)
     }
 
-    fn dot(&self, desk: &Desk) -> Option<String> {
-        Some(to_dot(&desk.looked_at_tree()?, desk.catalogue()))
+    fn dot(&self, context: &ViewContext) -> Option<String> {
+        Some(to_dot(&context.inspected_tree()?, context.catalogue()))
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "The task hierarchy of an individual, its genome. Root and the other composite subtasks\n\
          (bold) choose among their children until they terminate; primitive subtasks act. Lit is\n\
          the path from root to action in the rollout. State types: in which a subtask can be\n\
@@ -159,13 +178,13 @@ impl View for Hierarchy {
 
 /// The area of the tree below the head, and how many of its lines are above it: the selected
 /// one is always on the screen.
-fn place_of_tree(desk: &Desk, tree: &Tree, area: Rect) -> (Rect, usize) {
+fn place_of_tree(context: &ViewContext, tree: &Tree, area: Rect) -> (Rect, usize) {
     let place = Rect {
         y: area.y + area.height.min(1),
         height: area.height.saturating_sub(1),
         ..area
     };
-    let skipped = desk
+    let skipped = context
         .node_in(tree)
         .saturating_sub(usize::from(place.height / 2));
     (

@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::{Paint, one_line, put, wrapped};
 use crate::dashboard::views::shared::origin;
 use crate::evolution::{Origin, RankedRecord};
@@ -12,15 +12,15 @@ use crate::worlds::{Kind, StateTypes, Subtask};
 
 /// Draws it, as much as there is room for.
 pub(super) fn draw(
-    desk: &Desk,
+    context: &ViewContext,
     tree: &Tree,
     individual: &RankedRecord,
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let look = &desk.look;
+    let look = &context.look;
     let room = usize::from(area.width.saturating_sub(3));
-    let texts = about(desk, tree).into_iter().chain(story(individual));
+    let texts = about(context, tree).into_iter().chain(story(individual));
     let lines = texts.flat_map(|(text, paint)| {
         let lines = wrapped(&one_line(&text), room, "  ");
         lines.into_iter().map(move |line| (line, paint))
@@ -31,9 +31,9 @@ pub(super) fn draw(
 }
 
 /// What the selected subtask is.
-fn about(desk: &Desk, tree: &Tree) -> Vec<(String, Paint)> {
-    let catalogue = desk.catalogue();
-    let node = desk.node_in(tree);
+fn about(context: &ViewContext, tree: &Tree) -> Vec<(String, Paint)> {
+    let catalogue = context.catalogue();
+    let node = context.node_in(tree);
     if node >= tree.nodes().len() {
         return Vec::new();
     }

@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::{Paint, put, width};
 use crate::evolution::RankedRecord;
 use crate::hierarchy::{Tree, draw};
@@ -27,18 +27,23 @@ pub(super) struct Table {
 }
 
 impl Table {
-    pub(super) fn of(desk: &Desk, individual: &RankedRecord, tree: &Tree, columns: u16) -> Self {
-        let lines = draw(tree, desk.catalogue(), desk.look.signs.tree);
+    pub(super) fn of(
+        context: &ViewContext,
+        individual: &RankedRecord,
+        tree: &Tree,
+        columns: u16,
+    ) -> Self {
+        let lines = draw(tree, context.catalogue(), context.look.signs.tree);
         let names = lines.iter().map(|line| width(line)).max().unwrap_or(0);
         let first = u16::try_from(names).unwrap_or(u16::MAX).saturating_add(4);
-        let types = first.saturating_add(desk.catalogue().state_types.len().max(5) as u16 + 1);
+        let types = first.saturating_add(context.catalogue().state_types.len().max(5) as u16 + 1);
         let all = types.saturating_add(TEMPERATURE + INVOKED) <= columns;
         let after = if all { types } else { first };
-        let on_stage = desk
-            .stage
+        let on_stage = context
+            .player
             .subject()
             .is_some_and(|subject| subject.id == individual.id);
-        let rollout = desk.stage.rollout().filter(|_| on_stage);
+        let rollout = context.player.rollout().filter(|_| on_stage);
         Self {
             lines,
             types: all.then_some(first),
@@ -54,7 +59,7 @@ impl Table {
             path: rollout
                 .map(|rollout| rollout.status().path.clone())
                 .unwrap_or_default(),
-            selected: desk.node_in(tree),
+            selected: context.node_in(tree),
         }
     }
 
@@ -72,8 +77,8 @@ impl Table {
         ]
     }
 
-    pub(super) fn draw_head(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let dim = desk.look.style(Paint::Dim);
+    pub(super) fn draw_head(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let dim = context.look.style(Paint::Dim);
         put(buffer, area, (2, 0), "subtask", dim);
         if let Some(column) = self.types {
             put(buffer, area, (column, 0), "types", dim);
@@ -88,14 +93,14 @@ impl Table {
 
     pub(super) fn draw_node(
         &self,
-        desk: &Desk,
+        context: &ViewContext,
         tree: &Tree,
         node: usize,
         row: u16,
         area: Rect,
         buffer: &mut Buffer,
     ) {
-        let (look, catalogue) = (&desk.look, desk.catalogue());
+        let (look, catalogue) = (&context.look, context.catalogue());
         let subtask = catalogue.subtask(tree.subtask(node));
         let lit = self.path.contains(&node);
         let dim = look.style(Paint::Dim);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use ratatui::text::Line;
 
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::lines::Pen;
 use crate::dashboard::look::{Paint, one_line, wrapped};
 use crate::evolution::Origin;
@@ -18,12 +18,16 @@ use crate::lab::specimen::{Ancestor, Lineage};
 ///      inherited Capture from 340, FindNest from 351   reset Root, Deliver
 ///  340 born in ...
 /// ```
-pub(super) fn lines(desk: &Desk, lineage: &Lineage, columns: usize) -> Vec<Line<'static>> {
-    let look = &desk.look;
+pub(super) fn lines(
+    context: &ViewContext,
+    lineage: &Lineage,
+    columns: usize,
+) -> Vec<Line<'static>> {
+    let look = &context.look;
     let known = lineage.ancestors.len().saturating_sub(1);
     let note = format!("{known} ancestors in all; the line that the root came down:");
     let mut lines = vec![Pen::new(look).text(note, Paint::Dim).line()];
-    let individuals = desk.shown().map(|record| &record.individuals);
+    let individuals = context.shown().map(|record| &record.individuals);
     let scored = individuals
         .and_then(|all| all.first())
         .map_or(1, |one| one.trials.len());

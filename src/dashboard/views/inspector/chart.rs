@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::lines::{TINY, number};
 use crate::dashboard::look::{Canvas, Layer, Paint, put, shortened, width, wrapped};
 use crate::lab::specimen::{Profile, Quantity};
@@ -41,14 +41,14 @@ fn sign(index: usize) -> char {
 ///  1 (450,450)  2 (150,450)
 /// ```
 pub(super) fn curves(
-    desk: &Desk,
+    context: &ViewContext,
     profile: &Profile,
     values: &[f64],
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let look = &desk.look;
-    let legend = legend(desk, profile, area, buffer);
+    let look = &context.look;
+    let legend = legend(context, profile, area, buffer);
     let chart = Rect {
         x: area.x + MARGIN.min(area.width),
         width: area.width.saturating_sub(MARGIN),
@@ -94,12 +94,12 @@ pub(super) fn curves(
     put(buffer, area, (0, 0), &format!("{:>8}", number(high)), dim);
     let last = chart.height.saturating_sub(1);
     put(buffer, area, (0, last), &format!("{:>8}", number(low)), dim);
-    ends(desk, [left, right], chart, buffer);
+    ends(context, [left, right], chart, buffer);
 }
 
 /// Writes the ends of a scale below a chart.
-fn ends(desk: &Desk, [left, right]: [f64; 2], chart: Rect, buffer: &mut Buffer) {
-    let dim = desk.look.style(Paint::Dim);
+fn ends(context: &ViewContext, [left, right]: [f64; 2], chart: Rect, buffer: &mut Buffer) {
+    let dim = context.look.style(Paint::Dim);
     let line = Rect {
         y: chart.bottom(),
         height: 1,
@@ -112,7 +112,7 @@ fn ends(desk: &Desk, [left, right]: [f64; 2], chart: Rect, buffer: &mut Buffer) 
 }
 
 /// Writes which curve is which at the bottom of the area; returns the lines it took.
-fn legend(desk: &Desk, profile: &Profile, area: Rect, buffer: &mut Buffer) -> u16 {
+fn legend(context: &ViewContext, profile: &Profile, area: Rect, buffer: &mut Buffer) -> u16 {
     let entries = profile.curves.iter().enumerate();
     let entries: Vec<_> = entries
         .map(|(index, curve)| (index, format!("{} {}   ", sign(index), curve.label)))
@@ -131,7 +131,7 @@ fn legend(desk: &Desk, profile: &Profile, area: Rect, buffer: &mut Buffer) -> u1
     let rows = row + 1;
     let top = area.height.saturating_sub(rows);
     for (column, row, index, text) in places {
-        let style = desk.look.style(Paint::series(index));
+        let style = context.look.style(Paint::series(index));
         put(buffer, area, (column, top + row), text, style);
     }
     rows
@@ -147,7 +147,7 @@ fn legend(desk: &Desk, profile: &Profile, area: Rect, buffer: &mut Buffer) -> u1
 ///  across angle deg -60 to 60, down distance mm 437 to 3500
 /// ```
 pub(super) fn sheets(
-    desk: &Desk,
+    context: &ViewContext,
     profile: &Profile,
     down: &Scale,
     area: Rect,
@@ -176,7 +176,7 @@ pub(super) fn sheets(
             height: (height + 1) as u16,
         };
         sheet(
-            desk,
+            context,
             profile,
             which,
             grain,
@@ -185,7 +185,7 @@ pub(super) fn sheets(
         );
     }
     for (row, text) in (0..).zip(&legend) {
-        let dim = desk.look.style(Paint::Dim);
+        let dim = context.look.style(Paint::Dim);
         put(
             buffer,
             area,
@@ -267,14 +267,14 @@ impl Grain {
 
 /// One sheet: of a curve, or of which curve is largest.
 fn sheet(
-    desk: &Desk,
+    context: &ViewContext,
     profile: &Profile,
     which: Option<usize>,
     grain: Grain,
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let look = &desk.look;
+    let look = &context.look;
     let [low, high] = range(profile);
     let curve = which.and_then(|index| profile.curves.get(index));
     let title = match (which, curve) {

@@ -11,13 +11,13 @@ use ratatui::text::Line;
 
 use super::shared::nobody;
 use super::view::View;
-use crate::dashboard::desk::Desk;
-use crate::dashboard::input::Effect;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::Subject;
+use crate::dashboard::context::ViewContext;
+use crate::dashboard::context::{Clicked, line_at};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, last_start, number};
 use crate::dashboard::look::{Paint, put, width};
-use crate::dashboard::mouse::{Clicked, line_at};
-use crate::dashboard::stage::Subject;
 use crate::hierarchy::{draw, to_dot};
 use crate::lab::specimen::{Lineage, Profile, lineage};
 use crate::learning::SelectionProbabilities;
@@ -84,16 +84,19 @@ struct Known {
 }
 
 impl Inspector {
-    fn tree_lines(&self, desk: &Desk) -> Vec<Line<'static>> {
-        let look = &desk.look;
-        let Some(specimen) = desk.stage.specimen() else {
+    fn tree_lines(&self, context: &ViewContext) -> Vec<Line<'static>> {
+        let look = &context.look;
+        let Some(specimen) = context.player.specimen() else {
             return Vec::new();
         };
         let hierarchy = &specimen.individual.hierarchy;
-        let drawn = draw(hierarchy.tree(), desk.catalogue(), look.signs.tree);
+        let drawn = draw(hierarchy.tree(), context.catalogue(), look.signs.tree);
         let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 1;
-        let visits = desk.stage.rollout().map(|rollout| &rollout.status().visits);
-        let selected = desk.node_in(hierarchy.tree());
+        let visits = context
+            .player
+            .rollout()
+            .map(|rollout| &rollout.status().visits);
+        let selected = context.node_in(hierarchy.tree());
         let values = drawn.into_iter().zip(hierarchy.values()).enumerate();
         values
             .map(|(node, (line, values))| {
@@ -119,22 +122,22 @@ impl Inspector {
             .collect()
     }
 
-    fn page_lines(&self, desk: &Desk, page: Page, columns: usize) -> Vec<Line<'static>> {
+    fn page_lines(&self, context: &ViewContext, page: Page, columns: usize) -> Vec<Line<'static>> {
         let Some(known) = &self.known else {
             return Vec::new();
         };
         match page {
             Page::Values => Vec::new(),
-            Page::Selection => selection::lines(desk, &known.selection, columns),
+            Page::Selection => selection::lines(context, &known.selection, columns),
             Page::Lineage => match &known.lineage {
-                Some(lineage) => ancestry::lines(desk, lineage, columns),
+                Some(lineage) => ancestry::lines(context, lineage, columns),
                 None => Vec::new(),
             },
         }
     }
 
     /// Draws a page below a line with its title.
-    fn draw_page(&self, desk: &Desk, page: Page, area: Rect, buffer: &mut Buffer) {
+    fn draw_page(&self, context: &ViewContext, page: Page, area: Rect, buffer: &mut Buffer) {
         let Some(known) = &self.known else { return };
         let inside = Rect {
             y: area.y + area.height.min(1),
@@ -142,18 +145,18 @@ impl Inspector {
             ..area
         };
         match page {
-            Page::Values => self.shelf.draw(desk, &known.profiles, inside, buffer),
+            Page::Values => self.shelf.draw(context, &known.profiles, inside, buffer),
             _ => {
-                let lines = self.page_lines(desk, page, inside.width.into());
+                let lines = self.page_lines(context, page, inside.width.into());
                 let scroll = if page == self.page { self.scroll } else { 0 };
-                draw_lines(&desk.look, &lines, scroll, inside, buffer);
+                draw_lines(&context.look, &lines, scroll, inside, buffer);
             }
         }
     }
 
     /// The area of the tree, and how many of its lines are above it.
-    fn place_of_tree(&self, desk: &Desk, area: Rect) -> (Rect, usize) {
-        let lines = self.tree_lines(desk);
+    fn place_of_tree(&self, context: &ViewContext, area: Rect) -> (Rect, usize) {
+        let lines = self.tree_lines(context);
         let count = |lines: usize| u16::try_from(lines).unwrap_or(u16::MAX);
         if Self::is_roomy(area) {
             let [left, _] = columns(area, 2 * area.width / 5);
@@ -163,33 +166,33 @@ impl Inspector {
         let widest = lines.iter().map(Line::width).max().unwrap_or(0);
         let most = area.width.saturating_sub(PAGE).max(area.width / 2);
         let [left, _] = columns(area, count(widest).min(most));
-        let skipped = desk.node.saturating_sub(usize::from(left.height / 2));
+        let skipped = context.node.saturating_sub(usize::from(left.height / 2));
         (left, skipped.min(last_start(lines.len(), left.height)))
     }
 
     /// Everything at once.
-    fn draw_roomy(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    fn draw_roomy(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let [left, right] = columns(area, 2 * area.width / 5);
-        let (above, _) = self.place_of_tree(desk, area);
+        let (above, _) = self.place_of_tree(context, area);
         let [_, selection] = rows(left, above.height);
         let [values, lineage] = rows(right, right.height * 3 / 5);
-        draw_lines(&desk.look, &self.tree_lines(desk), 0, above, buffer);
+        draw_lines(&context.look, &self.tree_lines(context), 0, above, buffer);
         for (page, area) in [
             (Page::Values, values),
             (Page::Selection, selection),
             (Page::Lineage, lineage),
         ] {
-            title(desk, page, page == self.page, area, buffer);
-            self.draw_page(desk, page, area, buffer);
+            title(context, page, page == self.page, area, buffer);
+            self.draw_page(context, page, area, buffer);
         }
     }
 
     /// The tree and one page.
-    fn draw_narrow(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let lines = self.tree_lines(desk);
-        let (left, skipped) = self.place_of_tree(desk, area);
+    fn draw_narrow(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let lines = self.tree_lines(context);
+        let (left, skipped) = self.place_of_tree(context, area);
         let [_, right] = columns(area, left.width);
-        draw_lines(&desk.look, &lines, skipped, left, buffer);
+        draw_lines(&context.look, &lines, skipped, left, buffer);
         let mut column = 0;
         for page in Page::ALL {
             let area = Rect {
@@ -197,9 +200,9 @@ impl Inspector {
                 width: right.width.saturating_sub(column),
                 ..right
             };
-            column += title(desk, page, page == self.page, area, buffer) + 1;
+            column += title(context, page, page == self.page, area, buffer) + 1;
         }
-        self.draw_page(desk, self.page, right, buffer);
+        self.draw_page(context, self.page, right, buffer);
     }
 
     fn is_roomy(area: Rect) -> bool {
@@ -208,13 +211,19 @@ impl Inspector {
 }
 
 /// Writes the title of a page; returns its columns.
-fn title(desk: &Desk, page: Page, has_focus: bool, area: Rect, buffer: &mut Buffer) -> u16 {
+fn title(
+    context: &ViewContext,
+    page: Page,
+    has_focus: bool,
+    area: Rect,
+    buffer: &mut Buffer,
+) -> u16 {
     let (sign, paint) = match has_focus {
-        true => (desk.look.signs.pointer, Paint::Focus),
+        true => (context.look.signs.pointer, Paint::Focus),
         false => (" ", Paint::Title),
     };
     let text = format!("{sign}{}", page.title());
-    put(buffer, area, (0, 0), &text, desk.look.style(paint))
+    put(buffer, area, (0, 0), &text, context.look.style(paint))
 }
 
 /// Two columns with a gap, the left one so wide.
@@ -236,18 +245,30 @@ fn rows(area: Rect, above: u16) -> [Rect; 2] {
 }
 
 impl View for Inspector {
-    fn caption(&self, desk: &Desk) -> String {
-        let subject = desk.stage.subject();
+    fn name(&self) -> &'static str {
+        "inspector"
+    }
+
+    fn title(&self) -> &'static str {
+        "Inspector"
+    }
+
+    fn needs_rollout(&self) -> bool {
+        true
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        let subject = context.player.subject();
         subject.map_or(String::new(), |subject| subject.to_string())
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         if self.known.is_none() {
-            nobody(desk, area, buffer);
+            nobody(context, area, buffer);
         } else if Self::is_roomy(area) {
-            self.draw_roomy(desk, area, buffer);
+            self.draw_roomy(context, area, buffer);
         } else {
-            self.draw_narrow(desk, area, buffer);
+            self.draw_narrow(context, area, buffer);
         }
     }
 
@@ -260,8 +281,8 @@ impl View for Inspector {
         ]
     }
 
-    fn can(&self, desk: &Desk, action: Action) -> bool {
-        let nodes = desk.stage.tree().map_or(0, |tree| tree.nodes().len());
+    fn can(&self, context: &ViewContext, action: Action) -> bool {
+        let nodes = context.player.tree().map_or(0, |tree| tree.nodes().len());
         let known = self.known.is_some();
         match action {
             Action::Down => nodes > 1,
@@ -271,9 +292,9 @@ impl View for Inspector {
         }
     }
 
-    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
+    fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
         let scrolls = self.page == Page::Lineage;
-        let nodes = desk.stage.tree().map_or(1, |tree| tree.nodes().len());
+        let nodes = context.player.tree().map_or(1, |tree| tree.nodes().len());
         match action {
             Action::NextPanel => self.page = self.page.turned(1),
             Action::PreviousPanel => self.page = self.page.turned(Page::ALL.len() - 1),
@@ -281,10 +302,10 @@ impl View for Inspector {
             Action::Down if scrolls => self.scroll += 1,
             Action::PageUp => self.scroll = self.scroll.saturating_sub(10),
             Action::PageDown => self.scroll += 10,
-            Action::Up => desk.node = desk.node.min(nodes - 1).saturating_sub(1),
-            Action::Down => desk.node = (desk.node + 1).min(nodes - 1),
-            Action::Top => desk.node = 0,
-            Action::Bottom => desk.node = nodes - 1,
+            Action::Up => context.node = context.node.min(nodes - 1).saturating_sub(1),
+            Action::Down => context.node = (context.node + 1).min(nodes - 1),
+            Action::Top => context.node = 0,
+            Action::Bottom => context.node = nodes - 1,
             Action::Mode => self.shelf.next_quantity(),
             Action::Left => self.shelf.turn(-1),
             Action::Right => self.shelf.turn(1),
@@ -293,36 +314,39 @@ impl View for Inspector {
         Some(Vec::new())
     }
 
-    fn click(&mut self, desk: &mut Desk, area: Rect, at: Position) -> Clicked {
-        let (place, skipped) = self.place_of_tree(desk, area);
-        let Some(tree) = desk.stage.tree() else {
+    fn click(&mut self, context: &mut ViewContext, area: Rect, at: Position) -> Clicked {
+        let (place, skipped) = self.place_of_tree(context, area);
+        let Some(tree) = context.player.tree() else {
             return Clicked::Nothing;
         };
         let node = line_at(at, place, 0).map(|line| line + skipped);
         let node = node.filter(|node| *node < tree.nodes().len());
-        Clicked::on(node, desk.node_in(tree), |node| desk.node = node)
+        Clicked::on(node, context.node_in(tree), |node| context.node = node)
     }
 
-    fn prepare(&mut self, desk: &Desk) {
-        let Some((specimen, subject)) = desk.stage.specimen().zip(desk.stage.subject()) else {
+    fn prepare(&mut self, context: &ViewContext) {
+        let Some((specimen, subject)) = context.player.specimen().zip(context.player.subject())
+        else {
             self.known = None;
             return;
         };
-        let node = desk.node_in(specimen.individual.hierarchy.tree());
-        let lines = self.page_lines(desk, self.page, desk.size.0.into()).len();
+        let node = context.node_in(specimen.individual.hierarchy.tree());
+        let lines = self
+            .page_lines(context, self.page, context.size.0.into())
+            .len();
         self.scroll = self.scroll.min(last_start(lines, 3));
         let same = self.known.as_ref().filter(|known| known.subject == subject);
         if same.is_some_and(|known| known.node == node) {
             return;
         }
-        let profiles = desk.bench.profiles(specimen, node);
+        let profiles = context.bench.profiles(specimen, node);
         self.shelf.fit(&profiles);
         if let Some(known) = self.known.as_mut().filter(|known| known.subject == subject) {
             known.profiles = profiles;
             known.node = node;
             return;
         }
-        let records = desk.model().generations();
+        let records = context.history().generations();
         let until = records
             .iter()
             .take_while(|record| record.generation <= subject.generation);
@@ -330,28 +354,28 @@ impl View for Inspector {
             subject,
             node,
             profiles,
-            selection: desk.bench.selection(specimen),
+            selection: context.bench.selection(specimen),
             lineage: lineage(until.map(|record| &**record), subject.id),
         });
     }
 
-    fn csv(&self, desk: &Desk) -> Option<String> {
+    fn csv(&self, context: &ViewContext) -> Option<String> {
         let known = self.known.as_ref()?;
         Some(match self.page {
             Page::Values => values::csv(&known.profiles),
-            Page::Selection => selection::csv(desk, &known.selection),
+            Page::Selection => selection::csv(context, &known.selection),
             Page::Lineage => ancestry::csv(known.lineage.as_ref()?),
         })
     }
 
-    fn dot(&self, desk: &Desk) -> Option<String> {
+    fn dot(&self, context: &ViewContext) -> Option<String> {
         match self.page {
             Page::Lineage => Some(ancestry::dot(self.known.as_ref()?.lineage.as_ref()?)),
-            _ => Some(to_dot(desk.stage.tree()?, desk.catalogue())),
+            _ => Some(to_dot(context.player.tree()?, context.catalogue())),
         }
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "An individual, taken apart. Move along its tree, beside it the temperatures that it came\n\
          with and how often each subtask was invoked in the rollout. Values: what the subtask under the\n\
          cursor has learned - Q of a primitive subtask's actions (Thesis Figure 4.3); C~, C, V\n\

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use ratatui::text::Line;
 
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::lines::{Pen, percent};
 use crate::dashboard::look::{Paint, shortened, wrapped};
 use crate::learning::SelectionProbabilities;
@@ -19,12 +19,12 @@ const LEAST: f64 = 0.005;
 ///    Avoid            100 %  ━━━━━━━━━━   mean 98 %
 /// ```
 pub(super) fn lines(
-    desk: &Desk,
+    context: &ViewContext,
     selection: &SelectionProbabilities,
     columns: usize,
 ) -> Vec<Line<'static>> {
-    let look = &desk.look;
-    let catalogue = desk.catalogue();
+    let look = &context.look;
+    let catalogue = context.catalogue();
     let names = columns.saturating_sub(2 + 6 + 12).clamp(8, 16);
     let bar = columns.saturating_sub(2 + names + 6 + 2 + 12).min(20);
     let mut lines = Vec::new();
@@ -41,7 +41,7 @@ pub(super) fn lines(
         };
         for (place, (primitive, &share)) in catalogue.primitives().zip(shares).enumerate() {
             let name = primitive.name(catalogue);
-            let mean = mean(desk, index, name);
+            let mean = mean(context, index, name);
             if share < LEAST && mean.is_none_or(|mean| mean < LEAST) {
                 continue;
             }
@@ -64,14 +64,14 @@ pub(super) fn lines(
 }
 
 /// The mean of the better half of the generation shown.
-fn mean(desk: &Desk, state_type: usize, primitive: &str) -> Option<f64> {
-    let of = desk.shown()?.selection_probabilities.get(state_type)?;
+fn mean(context: &ViewContext, state_type: usize, primitive: &str) -> Option<f64> {
+    let of = context.shown()?.selection_probabilities.get(state_type)?;
     of.as_ref()?.get(primitive).copied()
 }
 
 /// The same as a table.
-pub(super) fn csv(desk: &Desk, selection: &SelectionProbabilities) -> String {
-    let catalogue = desk.catalogue();
+pub(super) fn csv(context: &ViewContext, selection: &SelectionProbabilities) -> String {
+    let catalogue = context.catalogue();
     let mut csv = String::from("state_type,primitive,probability\n");
     for (index, shares) in selection.iter().enumerate() {
         let shares = shares.iter().flatten();

@@ -7,7 +7,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::chart::{self, largest};
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, decimals, draw_lines, fixed};
 use crate::dashboard::look::{Paint, put, shortened, wrapped};
@@ -69,14 +69,20 @@ impl Shelf {
     }
 
     /// Draws the profile that is looked at.
-    pub(super) fn draw(&self, desk: &Desk, profiles: &[Profile], area: Rect, buffer: &mut Buffer) {
-        let look = &desk.look;
+    pub(super) fn draw(
+        &self,
+        context: &ViewContext,
+        profiles: &[Profile],
+        area: Rect,
+        buffer: &mut Buffer,
+    ) {
+        let look = &context.look;
         let Some(profile) = self.chosen(profiles) else {
             let text = "this subtask can act in no state";
             put(buffer, area, (0, 0), text, look.style(Paint::Dim));
             return;
         };
-        let title = wrapped(&self.title(desk, profile), usize::from(area.width), "");
+        let title = wrapped(&self.title(context, profile), usize::from(area.width), "");
         for (row, line) in (0..area.height).zip(&title) {
             put(buffer, area, (0, row), line, look.style(Paint::Dim));
         }
@@ -87,18 +93,18 @@ impl Shelf {
             ..area
         };
         match (&profile.down, &profile.across) {
-            (Some(down), _) => chart::sheets(desk, profile, down, inside, buffer),
+            (Some(down), _) => chart::sheets(context, profile, down, inside, buffer),
             (None, Scale::Quantity { values, .. }) => {
-                chart::curves(desk, profile, values, inside, buffer);
+                chart::curves(context, profile, values, inside, buffer);
             }
             (None, Scale::Cases { labels, .. }) => {
-                let lines = table(desk, profile, labels, inside.width.into());
+                let lines = table(context, profile, labels, inside.width.into());
                 draw_lines(look, &lines, 0, inside, buffer);
             }
         }
     }
 
-    fn title(&self, desk: &Desk, profile: &Profile) -> String {
+    fn title(&self, context: &ViewContext, profile: &Profile) -> String {
         let over = match &profile.down {
             Some(down) => format!("{}, {}", profile.across.name(), down.name()),
             None => profile.across.name().to_owned(),
@@ -106,7 +112,7 @@ impl Shelf {
         let over = over.replace('_', " ");
         let place = match self.places {
             1 => String::new(),
-            places => format!("{}/{places} {}  ", self.place + 1, keys(desk)),
+            places => format!("{}/{places} {}  ", self.place + 1, keys(context)),
         };
         let what = words(profile.quantity);
         match profile.quantity {
@@ -120,8 +126,8 @@ impl Shelf {
 }
 
 /// The keys that turn to another place.
-fn keys(desk: &Desk) -> String {
-    let hint = desk.keys.hint(Action::Left, desk.look.signs);
+fn keys(context: &ViewContext) -> String {
+    let hint = context.keys.hint(Action::Left, context.look.signs);
     hint.map_or(String::new(), |(keys, _)| keys)
 }
 
@@ -137,8 +143,13 @@ fn words(quantity: Quantity) -> &'static str {
 }
 
 /// One line a case, one column a curve; the largest of a line is pointed at.
-fn table(desk: &Desk, profile: &Profile, labels: &[String], columns: usize) -> Vec<Line<'static>> {
-    let look = &desk.look;
+fn table(
+    context: &ViewContext,
+    profile: &Profile,
+    labels: &[String],
+    columns: usize,
+) -> Vec<Line<'static>> {
+    let look = &context.look;
     let curves = &profile.curves;
     let each = (columns.saturating_sub(17) / curves.len().max(1)).clamp(7, 16);
     let label = columns.saturating_sub(each * curves.len()).clamp(8, 18);

@@ -3,7 +3,7 @@
 use ratatui::text::Line;
 
 use super::Shown;
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::Paint;
 use crate::dashboard::look::lines::{Pen, number};
 use crate::lab::specimen::StepTrace;
@@ -17,12 +17,12 @@ use crate::lab::specimen::StepTrace;
 ///
 /// The steps of an earlier trial stand below its number. Subtasks that ended stand behind, with ✓ at their goal and ! elsewhere.
 pub(super) fn lines(
-    desk: &Desk,
+    context: &ViewContext,
     shown: &Shown<'_>,
     back: usize,
     rows: usize,
 ) -> Vec<Line<'static>> {
-    let steps = (back + 1..).map_while(|back| desk.stage.trace(back));
+    let steps = (back + 1..).map_while(|back| context.player.trace(back));
     let (mut trial, mut lines) = (shown.trace.trial, Vec::new());
     for trace in steps.take(rows) {
         if trace.trial != trial {

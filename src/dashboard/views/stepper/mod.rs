@@ -12,8 +12,8 @@ use ratatui::text::Line;
 
 use super::shared::{nobody, pace};
 use super::view::View;
-use crate::dashboard::desk::Desk;
-use crate::dashboard::input::Effect;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, last_start};
 use crate::dashboard::look::{Look, Paint, fitted, put};
@@ -68,9 +68,9 @@ impl Shown<'_> {
 }
 
 /// Says how a rollout that is halted before its first time step goes on.
-fn no_step_yet(desk: &Desk, area: Rect, buffer: &mut Buffer) {
-    let look = &desk.look;
-    let key = desk.keys.hint(Action::StepRollout, look.signs);
+fn no_step_yet(context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+    let look = &context.look;
+    let key = context.keys.hint(Action::StepRollout, look.signs);
     let text = match key {
         Some((key, _)) => format!("no time step of this rollout yet: {key} takes one"),
         None => String::from("no time step of this rollout yet"),
@@ -159,17 +159,17 @@ impl Areas {
 }
 
 impl Stepper {
-    fn shown<'d>(&self, desk: &'d Desk) -> Option<Shown<'d>> {
+    fn shown<'d>(&self, context: &'d ViewContext) -> Option<Shown<'d>> {
         Some(Shown {
-            trace: desk.stage.trace(self.back)?,
-            tree: desk.stage.tree()?,
-            catalogue: desk.catalogue(),
-            look: &desk.look,
+            trace: context.player.trace(self.back)?,
+            tree: context.player.tree()?,
+            catalogue: context.catalogue(),
+            look: &context.look,
         })
     }
 
     /// The call stack, what came of it, and what was before, in as much detail as fits.
-    fn lines(&self, desk: &Desk, shown: &Shown<'_>, area: Rect) -> Vec<Line<'static>> {
+    fn lines(&self, context: &ViewContext, shown: &Shown<'_>, area: Rect) -> Vec<Line<'static>> {
         let columns = usize::from(area.width);
         let all = |detail| {
             let mut lines = stack::lines(shown, columns, detail);
@@ -187,9 +187,9 @@ impl Stepper {
             }
         }
         let room = rows - lines.len();
-        if room >= LEAST_BEFORE && desk.stage.traces() > self.back + 1 {
+        if room >= LEAST_BEFORE && context.player.recorded_steps() > self.back + 1 {
             lines.push(rule(shown.look, "the steps before", columns));
-            lines.extend(before::lines(desk, shown, self.back, room - 1));
+            lines.extend(before::lines(context, shown, self.back, room - 1));
         }
         lines
     }
@@ -206,17 +206,30 @@ fn rule(look: &Look, title: &str, columns: usize) -> Line<'static> {
 }
 
 impl View for Stepper {
-    fn caption(&self, desk: &Desk) -> String {
-        let separator = desk.look.signs.separator;
-        let Some((rollout, subject)) = desk.stage.rollout().zip(desk.stage.subject()) else {
+    fn name(&self) -> &'static str {
+        "stepper"
+    }
+
+    fn title(&self) -> &'static str {
+        "Trial stepper"
+    }
+
+    fn needs_rollout(&self) -> bool {
+        true
+    }
+
+    fn caption(&self, context: &ViewContext) -> String {
+        let separator = context.look.signs.separator;
+        let Some((rollout, subject)) = context.player.rollout().zip(context.player.subject())
+        else {
             return String::new();
         };
-        let Some(trace) = desk.stage.trace(self.back) else {
-            let (trial, pace) = (rollout.status().trial, pace(desk));
+        let Some(trace) = context.player.trace(self.back) else {
+            let (trial, pace) = (rollout.status().trial, pace(context));
             return format!("trial {trial} {separator} {pace} {separator} {subject}");
         };
         let state = match self.back {
-            0 => pace(desk),
+            0 => pace(context),
             1 => String::from("1 step back"),
             back => format!("{back} steps back"),
         };
@@ -226,27 +239,27 @@ impl View for Stepper {
         )
     }
 
-    fn draw(&self, desk: &Desk, area: Rect, buffer: &mut Buffer) {
-        let look = &desk.look;
-        let Some(shown) = self.shown(desk) else {
-            return match desk.stage.rollout() {
-                Some(_) => no_step_yet(desk, area, buffer),
-                None => nobody(desk, area, buffer),
+    fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let look = &context.look;
+        let Some(shown) = self.shown(context) else {
+            return match context.player.rollout() {
+                Some(_) => no_step_yet(context, area, buffer),
+                None => nobody(context, area, buffer),
             };
         };
-        let grid = desk.scenery().grid.is_some();
+        let grid = context.scenery().grid.is_some();
         let rows = shown.trace.after.readings.len() + 2 + usize::from(grid);
         let areas = Areas::of(area, u16::try_from(rows).unwrap_or(u16::MAX));
         let scene = Scene {
             snapshot: Some(&shown.trace.after),
-            trail: desk.stage.trail(self.back),
-            cells: desk.stage.cells(self.back),
+            trail: context.player.trail(self.back),
+            cells: context.player.cells(self.back),
             ..Scene::default()
         };
-        draw_scene(desk, &scene, areas.arena, buffer);
-        let readings = readings::lines(desk, &shown, usize::from(areas.readings.width));
+        draw_scene(context, &scene, areas.arena, buffer);
+        let readings = readings::lines(context, &shown, usize::from(areas.readings.width));
         draw_lines(look, &readings, 0, areas.readings, buffer);
-        let lines = self.lines(desk, &shown, areas.stack);
+        let lines = self.lines(context, &shown, areas.stack);
         draw_lines(look, &lines, self.scroll, areas.stack, buffer);
     }
 
@@ -261,18 +274,18 @@ impl View for Stepper {
         ]
     }
 
-    fn can(&self, desk: &Desk, action: Action) -> bool {
-        action != Action::StepBack || self.back + 1 < desk.stage.traces()
+    fn can(&self, context: &ViewContext, action: Action) -> bool {
+        action != Action::StepBack || self.back + 1 < context.player.recorded_steps()
     }
 
-    fn act(&mut self, desk: &mut Desk, action: Action) -> Option<Vec<Effect>> {
+    fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
         match action {
             Action::StepRollout | Action::Right if self.back > 0 => self.back -= 1,
-            Action::Right => desk.stage.step(),
+            Action::Right => context.player.step(),
             Action::StepBack | Action::Left => {
-                let most = desk.stage.traces().saturating_sub(1);
+                let most = context.player.recorded_steps().saturating_sub(1);
                 self.back = (self.back + 1).min(most);
-                desk.stage.halt();
+                context.player.halt();
             }
             Action::Up => self.scroll = self.scroll.saturating_sub(1),
             Action::Down => self.scroll = self.scroll.saturating_add(1),
@@ -283,31 +296,34 @@ impl View for Stepper {
         Some(Vec::new())
     }
 
-    fn prepare(&mut self, desk: &Desk) {
-        let last = desk.stage.trace(0).map(|trace| (trace.trial, trace.step));
+    fn prepare(&mut self, context: &ViewContext) {
+        let last = context
+            .player
+            .trace(0)
+            .map(|trace| (trace.trial, trace.step));
         if last != self.last {
             self.last = last;
             self.back = 0;
         }
-        let Some(shown) = self.shown(desk) else {
+        let Some(shown) = self.shown(context) else {
             return;
         };
-        let (width, height) = desk.size;
+        let (width, height) = context.size;
         let inside = Rect::new(0, 0, width.saturating_sub(2), height.saturating_sub(4));
         let stack = Areas::of(inside, 0).stack;
-        let lines = self.lines(desk, &shown, stack).len();
+        let lines = self.lines(context, &shown, stack).len();
         self.scroll = self.scroll.min(last_start(lines, stack.height));
     }
 
-    fn csv(&self, desk: &Desk) -> Option<String> {
-        Some(csv::csv(&self.shown(desk)?))
+    fn csv(&self, context: &ViewContext) -> Option<String> {
+        Some(csv::csv(&self.shown(context)?))
     }
 
-    fn dot(&self, desk: &Desk) -> Option<String> {
-        Some(to_dot(desk.stage.tree()?, desk.catalogue()))
+    fn dot(&self, context: &ViewContext) -> Option<String> {
+        Some(to_dot(context.player.tree()?, context.catalogue()))
     }
 
-    fn lesson(&self) -> &'static str {
+    fn help_text(&self) -> &'static str {
         "One time step, taken apart. From the root down, every active subtask with the children\n\
          that can act: V is what a child is worth itself, C what is expected after it, C~ the\n\
          same with pseudo-rewards. A subtask chooses by C~+V at its own temperature; a\n\

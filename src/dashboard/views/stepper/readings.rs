@@ -3,7 +3,7 @@
 use ratatui::text::Line;
 
 use super::Shown;
-use crate::dashboard::desk::Desk;
+use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::Paint;
 use crate::dashboard::look::lines::Pen;
 use crate::dashboard::views::shared::case;
@@ -18,7 +18,11 @@ const VALUE: usize = 7;
 ///  proximity +0deg mm        350    312
 ///  target angle deg            -  -12.4
 /// ```
-pub(super) fn lines(desk: &Desk, shown: &Shown<'_>, columns: usize) -> Vec<Line<'static>> {
+pub(super) fn lines(
+    context: &ViewContext,
+    shown: &Shown<'_>,
+    columns: usize,
+) -> Vec<Line<'static>> {
     let trace = shown.trace;
     let both = columns >= 34;
     let name = columns.saturating_sub(if both { 2 * VALUE } else { VALUE });
@@ -44,10 +48,10 @@ pub(super) fn lines(desk: &Desk, shown: &Shown<'_>, columns: usize) -> Vec<Line<
         };
         lines.push(pen.right(&value(after.value), VALUE, Paint::Title).line());
     }
-    if let Some(case) = case(desk, &trace.after) {
+    if let Some(case) = case(context, &trace.after) {
         lines.push(Pen::new(shown.look).text(case, Paint::Notice).line());
     }
-    if desk.scenery().grid.is_some() {
+    if context.scenery().grid.is_some() {
         // Beside them stands what was the case before the step's lessons.
         let text = format!("cells: V after step {}", trace.step);
         lines.push(Pen::new(shown.look).text(text, Paint::Dim).line());

@@ -12,13 +12,13 @@ use super::screen::Screen;
 /// Takes a frame only when the one before has gone. A terminal that is slow or stuck thus
 /// costs frames, and never anybody's time: what changes meanwhile is in the next frame.
 #[derive(Debug)]
-pub(super) struct Outlet {
+pub(super) struct Writer {
     frames: Sender<Vec<u8>>,
     free: Arc<AtomicBool>,
 }
 
-impl Outlet {
-    /// Also returns who is told that the outlet is free again, or that the terminal is gone.
+impl Writer {
+    /// Also returns who is told that the writer is free again, or that the terminal is gone.
     pub(super) fn start(screen: Arc<Screen>) -> io::Result<(Self, Receiver<io::Result<()>>)> {
         let (frames, to_write) = bounded::<Vec<u8>>(1);
         let (sender, done) = bounded(1);
@@ -41,7 +41,7 @@ impl Outlet {
         self.free.load(Ordering::SeqCst)
     }
 
-    /// Sends a frame on its way. To be called when the outlet is free.
+    /// Sends a frame on its way. To be called when the writer is free.
     pub(super) fn send(&self, frame: Vec<u8>) {
         self.free.store(false, Ordering::SeqCst);
         if self.frames.try_send(frame).is_err() {

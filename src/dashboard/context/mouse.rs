@@ -7,7 +7,7 @@
 use ratatui::crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::{Position, Rect};
 
-use super::keys::Action;
+use crate::dashboard::keys::Action;
 
 /// Something that was done with the mouse, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub enum Gesture {
 
 impl Gesture {
     /// What the wheel asks for.
-    pub(super) fn scrolls(self) -> Option<Action> {
+    pub(in crate::dashboard) fn scrolls(self) -> Option<Action> {
         match self {
             Self::Click => None,
             Self::WheelUp => Some(Action::Up),
@@ -57,7 +57,7 @@ impl Mouse {
 
 /// What a click on a view has done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Clicked {
+pub(in crate::dashboard) enum Clicked {
     /// There was nothing to select.
     Nothing,
     /// It has selected something.
@@ -69,7 +69,11 @@ pub(super) enum Clicked {
 impl Clicked {
     /// A click on one of several things, or on none, when `before` was selected; `select`
     /// selects another.
-    pub(super) fn on<T: PartialEq>(thing: Option<T>, before: T, select: impl FnOnce(T)) -> Self {
+    pub(in crate::dashboard) fn on<T: PartialEq>(
+        thing: Option<T>,
+        before: T,
+        select: impl FnOnce(T),
+    ) -> Self {
         match thing {
             None => Self::Nothing,
             Some(thing) if thing == before => Self::Again,
@@ -82,7 +86,7 @@ impl Clicked {
 }
 
 /// Which line of a list is at a place: the list fills an area below a head of so many lines.
-pub(super) fn line_at(at: Position, area: Rect, head: u16) -> Option<usize> {
+pub(in crate::dashboard) fn line_at(at: Position, area: Rect, head: u16) -> Option<usize> {
     let below = at.y.checked_sub(area.y.saturating_add(head))?;
     area.contains(at).then_some(usize::from(below))
 }

@@ -3,39 +3,44 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::desk::{Desk, Mode};
 use super::hints;
-use super::keys::Action;
-use super::look::{Look, Paint, fitted, fitted_parts, one_line, put, width};
-use super::view_id::ViewId;
+use crate::dashboard::context::{Mode, ViewContext};
+use crate::dashboard::keys::Action;
+use crate::dashboard::look::{Look, Paint, fitted, fitted_parts, one_line, put, width};
+use crate::dashboard::view_id::ViewId;
 
 /// Draws the first line: the run, what it is doing, and the view.
 ///
 /// ```text
 ///  ▶ RUNNING  environment-1 seed 1 · generation 12 of at most 200 · Overview      FROZEN at 11
 /// ```
-pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
+pub(in crate::dashboard) fn draw(
+    context: &ViewContext,
+    view: ViewId,
+    area: Rect,
+    buffer: &mut Buffer,
+) {
     let line = Rect {
         height: area.height.min(1),
         ..area
     };
-    let look = &desk.look;
-    let (sign, word, paint) = desk.activity_mark();
+    let look = &context.look;
+    let (sign, word, paint) = context.activity_mark();
     let state = format!(" {sign} {word} ");
     let mut column = put(buffer, line, (0, 0), &state, look.style(paint));
-    let marks = marks(desk);
+    let marks = marks(context);
     let right = marks.iter().map(|mark| width(mark) + 1).sum::<usize>();
     let room = usize::from(line.width.saturating_sub(column)).saturating_sub(right);
     let separator = look.signs.separator;
-    let name = one_line(&desk.scenario().name);
-    let time = match desk.shown() {
+    let name = one_line(&context.scenario().name);
+    let time = match context.shown() {
         Some(record) => format!("generation {}", record.generation),
         None => String::from("before the first generation"),
     };
     let text = format!(
         " {} {separator} {time} {separator} {name} seed {}",
         view.title(),
-        desk.bench.seed()
+        context.bench.seed()
     );
     column = put(
         buffer,
@@ -54,45 +59,56 @@ pub(super) fn draw(desk: &Desk, view: ViewId, area: Rect, buffer: &mut Buffer) {
 }
 
 /// What makes the screen show something else than the present.
-fn marks(desk: &Desk) -> Vec<String> {
+fn marks(context: &ViewContext) -> Vec<String> {
     let mut marks = Vec::new();
-    match desk.mode {
+    match context.mode {
         Mode::Live => {}
         Mode::Watch => marks.push(String::from(" WATCHING ")),
         Mode::Replay => marks.push(String::from(" REPLAY ")),
     }
-    if desk.frozen() {
-        let latest = desk.model().latest().map_or(0, |record| record.generation);
+    if context.frozen() {
+        let latest = context
+            .history()
+            .latest()
+            .map_or(0, |record| record.generation);
         marks.push(format!(
             " {} VIEW FROZEN at {latest} ",
-            desk.look.signs.frozen
+            context.look.signs.frozen
         ));
-    } else if desk.is_in_the_past() {
-        let latest = desk.live().latest().map_or(0, |record| record.generation);
+    } else if context.is_in_the_past() {
+        let latest = context
+            .live_history()
+            .latest()
+            .map_or(0, |record| record.generation);
         marks.push(format!(" PAST of {latest} "));
     }
     marks
 }
 
 /// Draws the last line: a message, or what keys do.
-pub(super) fn hint_bar(desk: &Desk, hints: &[Action], area: Rect, buffer: &mut Buffer) {
+pub(in crate::dashboard) fn hint_bar(
+    context: &ViewContext,
+    hints: &[Action],
+    area: Rect,
+    buffer: &mut Buffer,
+) {
     let line = last_line(area);
-    if let Some(text) = desk.message() {
-        return put_message(&desk.look, text, line, buffer);
+    if let Some(text) = context.message() {
+        return put_message(&context.look, text, line, buffer);
     }
     let named = |actions: &[Action]| -> Vec<Hint> {
         let hints = actions.iter().filter_map(|&action| {
-            let (keys, _) = desk.keys.hint(action, desk.look.signs)?;
-            Some((keys, hints::word(desk, action)))
+            let (keys, _) = context.keys.hint(action, context.look.signs)?;
+            Some((keys, hints::word(context, action)))
         });
         hints.collect()
     };
-    let always = named(hints::always(desk));
-    put_hints(&desk.look, &named(hints), &always, line, buffer);
+    let always = named(hints::always(context));
+    put_hints(&context.look, &named(hints), &always, line, buffer);
 }
 
 /// The last line of an area.
-pub(super) fn last_line(area: Rect) -> Rect {
+pub(in crate::dashboard) fn last_line(area: Rect) -> Rect {
     Rect {
         y: area.bottom().saturating_sub(1),
         height: area.height.min(1),
@@ -101,14 +117,14 @@ pub(super) fn last_line(area: Rect) -> Rect {
 }
 
 /// Draws a message in the place of hints.
-pub(super) fn put_message(look: &Look, text: &str, line: Rect, buffer: &mut Buffer) {
+pub(in crate::dashboard) fn put_message(look: &Look, text: &str, line: Rect, buffer: &mut Buffer) {
     let text = fitted(&one_line(text), usize::from(line.width), look.signs);
     put(buffer, line, (0, 0), &text, look.style(Paint::Notice));
 }
 
 /// Draws what keys do, as many as there is room for; at the right end the keys that are
 /// always named, help and the way out.
-pub(super) fn put_hints(
+pub(in crate::dashboard) fn put_hints(
     look: &Look,
     hints: &[Hint],
     always: &[Hint],
@@ -131,7 +147,7 @@ pub(super) fn put_hints(
 }
 
 /// A key and what it does.
-pub(super) type Hint = (String, &'static str);
+pub(in crate::dashboard) type Hint = (String, &'static str);
 
 /// Columns that a hint takes, two of them empty.
 fn columns((key, hint): &Hint) -> u16 {

@@ -1,19 +1,19 @@
 //! A dashboard without a terminal: for single frames and for tests.
 
-use super::app::App;
-use super::input::{Effect, Input};
-use super::view_id::ViewId;
+use super::state::App;
+use crate::dashboard::context::{Effect, Input};
+use crate::dashboard::view_id::ViewId;
 use crate::lab::specimen::Archive;
 
 /// A dashboard without a terminal, over a run that is on disk. It fetches what the
 /// dashboard asks for at once; what cannot be done without a terminal or a run under way
 /// it hands on.
-pub struct Still {
+pub struct OffscreenDashboard {
     app: App,
     archive: Archive,
 }
 
-impl Still {
+impl OffscreenDashboard {
     /// A dashboard and where it fetches populations from.
     #[must_use]
     pub fn new(app: App, archive: Archive) -> Self {
@@ -29,19 +29,19 @@ impl Still {
     /// Takes in what happened; returns what was not done about it.
     pub fn update(&mut self, input: Input) -> Vec<Effect> {
         let effects = self.app.update(input);
-        self.carry_out(effects)
+        self.run_effects(effects)
     }
 
     /// Opens a view.
     pub fn open(&mut self, view: ViewId) {
         let effects = self.app.open(view);
-        self.carry_out(effects);
+        self.run_effects(effects);
     }
 
     /// Travels to the generation with this number, or the nearest that there is.
     pub fn travel_to(&mut self, generation: u64) {
         let effects = self.app.travel_to(generation);
-        self.carry_out(effects);
+        self.run_effects(effects);
     }
 
     /// Whether the frame drawn last is not what there is to see now; see
@@ -50,7 +50,7 @@ impl Still {
         self.app.take_dirty()
     }
 
-    fn carry_out(&mut self, effects: Vec<Effect>) -> Vec<Effect> {
+    fn run_effects(&mut self, effects: Vec<Effect>) -> Vec<Effect> {
         let mut left = Vec::new();
         for effect in effects {
             match effect {

@@ -7,14 +7,14 @@ const DIRECTIONS: usize = 181;
 
 /// How far an agent sees in each direction of its field of view.
 #[derive(Debug)]
-pub(super) struct Sight {
+pub(super) struct FieldOfView {
     at: [f64; 2],
     heading: f64,
     half_angle: f64,
     reach: Vec<f64>,
 }
 
-impl Sight {
+impl FieldOfView {
     /// Of an agent that has a heading and a field of view.
     pub(super) fn of(snapshot: &Snapshot, scenery: &Scenery) -> Option<Self> {
         let (view, heading) = (snapshot.view?, snapshot.heading?);

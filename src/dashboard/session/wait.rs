@@ -11,7 +11,7 @@ use super::exit::Exit;
 use crate::dashboard::terminal::{Job, Terminal};
 
 /// What a session was woken by; `N` is what else it hears.
-pub(super) enum Woken<N> {
+pub(super) enum WakeUp<N> {
     /// A key or the mouse.
     Typed(Typed),
     /// The shell or the window manager asks for something.
@@ -34,27 +34,27 @@ pub(super) fn wait<N>(
     signals: &Receiver<i32>,
     news: &Receiver<N>,
     time: &Receiver<Instant>,
-) -> Woken<N> {
+) -> WakeUp<N> {
     select! {
         // No more keys come from a terminal that is gone.
-        recv(terminal.keys) -> typed => typed.map_or(Woken::End(Exit::HungUp), Woken::Typed),
-        recv(terminal.jobs) -> job => job.map_or(Woken::Time, Woken::Job),
-        recv(terminal.drawn) -> drawn => drawn.map_or(Woken::Time, taken),
-        recv(signals) -> signal => signal.map_or(Woken::Time, ending),
-        recv(news) -> news => news.map_or(Woken::Silence, Woken::News),
-        recv(time) -> _ => Woken::Time,
+        recv(terminal.keys) -> typed => typed.map_or(WakeUp::End(Exit::HungUp), WakeUp::Typed),
+        recv(terminal.jobs) -> job => job.map_or(WakeUp::Time, WakeUp::Job),
+        recv(terminal.drawn) -> drawn => drawn.map_or(WakeUp::Time, taken),
+        recv(signals) -> signal => signal.map_or(WakeUp::Time, ending),
+        recv(news) -> news => news.map_or(WakeUp::Silence, WakeUp::News),
+        recv(time) -> _ => WakeUp::Time,
     }
 }
 
-fn taken<N>(frame: io::Result<()>) -> Woken<N> {
+fn taken<N>(frame: io::Result<()>) -> WakeUp<N> {
     match frame {
-        Ok(()) => Woken::Drawn,
-        Err(_) => Woken::End(Exit::HungUp),
+        Ok(()) => WakeUp::Drawn,
+        Err(_) => WakeUp::End(Exit::HungUp),
     }
 }
 
-fn ending<N>(signal: i32) -> Woken<N> {
-    Woken::End(match signal {
+fn ending<N>(signal: i32) -> WakeUp<N> {
+    WakeUp::End(match signal {
         SIGHUP => Exit::HungUp,
         signal => Exit::Signal(signal),
     })

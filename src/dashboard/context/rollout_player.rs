@@ -1,4 +1,4 @@
-//! The stage: a rollout of the individual that is looked at.
+//! The player: a rollout of the individual that is looked at.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -55,7 +55,7 @@ struct Recorded {
 
 /// A rollout of the individual that is looked at, on a copy with a random stream of its
 /// own: watching never touches evolution.
-pub struct Stage {
+pub struct RolloutPlayer {
     bench: &'static dyn Bench,
     population: Option<Arc<EvolutionState>>,
     /// The generation that was asked for last, and why it is not there.
@@ -75,8 +75,8 @@ pub struct Stage {
     held_for: Duration,
 }
 
-impl Stage {
-    pub(super) fn new(bench: &'static dyn Bench) -> Self {
+impl RolloutPlayer {
+    pub(in crate::dashboard) fn new(bench: &'static dyn Bench) -> Self {
         Self {
             bench,
             population: None,
@@ -95,7 +95,7 @@ impl Stage {
         }
     }
 
-    /// The population on the stage, with everything that it has learned.
+    /// The population on the player, with everything that it has learned.
     #[must_use]
     pub fn population(&self) -> Option<&Arc<EvolutionState>> {
         self.population.as_ref()
@@ -107,13 +107,13 @@ impl Stage {
         self.subject
     }
 
-    /// The individual on the stage, with what it had learned when it came there.
+    /// The individual on the player, with what it had learned when it came there.
     #[must_use]
     pub fn specimen(&self) -> Option<Specimen<'_>> {
         Specimen::with_id(self.population.as_deref()?, self.subject?.id)
     }
 
-    /// The hierarchy of the individual on the stage.
+    /// The hierarchy of the individual on the player.
     #[must_use]
     pub fn tree(&self) -> Option<&Tree> {
         Some(self.specimen()?.individual.hierarchy.tree())
@@ -141,7 +141,7 @@ impl Stage {
 
     /// How many steps are recorded.
     #[must_use]
-    pub fn traces(&self) -> usize {
+    pub fn recorded_steps(&self) -> usize {
         self.recorded.len()
     }
 
@@ -167,9 +167,9 @@ impl Stage {
         trail
     }
 
-    /// Why there is nothing on the stage.
+    /// Why there is nothing on the player.
     #[must_use]
-    pub fn refused(&self) -> Option<&str> {
+    pub fn load_error(&self) -> Option<&str> {
         self.refused.as_ref().map(|(_, why)| why.as_str())
     }
 
@@ -230,7 +230,7 @@ impl Stage {
     }
 
     /// Lets all trials of all rollouts begin there.
-    pub(super) fn begin_at(&mut self, start: Start) {
+    pub(in crate::dashboard) fn begin_at(&mut self, start: Start) {
         self.start = Some(start);
     }
 
@@ -249,7 +249,11 @@ impl Stage {
     }
 
     /// Takes in a population, or why there is none.
-    pub(super) fn receive(&mut self, generation: u64, state: Result<Arc<EvolutionState>, String>) {
+    pub(in crate::dashboard) fn receive(
+        &mut self,
+        generation: u64,
+        state: Result<Arc<EvolutionState>, String>,
+    ) {
         if self.asked == Some(generation) {
             self.asked = None;
         }
@@ -262,10 +266,14 @@ impl Stage {
         }
     }
 
-    /// Puts the individual on the stage that the person looks at. `by_choice` tells
+    /// Puts the individual on the player that the person looks at. `by_choice` tells
     /// whether the person chose it, or evolution went on by itself: then the trial on the
-    /// stage may end. Returns the generation to be loaded for it.
-    pub(super) fn want(&mut self, wanted: Option<Subject>, by_choice: bool) -> Option<u64> {
+    /// player may end. Returns the generation to be loaded for it.
+    pub(in crate::dashboard) fn want(
+        &mut self,
+        wanted: Option<Subject>,
+        by_choice: bool,
+    ) -> Option<u64> {
         let wanted = wanted?;
         let here = self.subject;
         if here == Some(wanted) {
@@ -319,7 +327,7 @@ impl Stage {
     }
 
     /// Lets time go by. Whether anything has changed.
-    pub(super) fn tick(&mut self, elapsed: Duration) -> bool {
+    pub(in crate::dashboard) fn tick(&mut self, elapsed: Duration) -> bool {
         let speed = self.speed();
         let (false, Some(rollout)) = (self.halted, &self.rollout) else {
             return false;

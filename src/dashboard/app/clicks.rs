@@ -2,14 +2,14 @@
 
 use ratatui::layout::{Position, Rect};
 
-use super::app::App;
-use super::input::Effect;
-use super::keys::Action;
-use super::mouse::{Clicked, Mouse};
-use super::overlay::Overlay;
-use super::panel::{body, inside};
-use super::view_id::ViewId;
-use super::views::panels;
+use super::state::App;
+use crate::dashboard::chrome::overlay::Overlay;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::{Clicked, Mouse};
+use crate::dashboard::keys::Action;
+use crate::dashboard::panel::{body, inside};
+use crate::dashboard::view_id::ViewId;
+use crate::dashboard::views::panels;
 
 impl App {
     /// Does what the mouse asks for.
@@ -26,16 +26,16 @@ impl App {
         let Some((id, area)) = self.place_at(mouse.at) else {
             return Vec::new();
         };
-        let had_focus = self.view != ViewId::Overview || self.desk.focus == id;
+        let had_focus = self.view != ViewId::Overview || self.context.focus == id;
         if self.view == ViewId::Overview {
-            self.desk.focus = id;
+            self.context.focus = id;
         }
         if let Some(action) = mouse.what.scrolls() {
             return self.perform(action);
         }
         let view = self.views.iter_mut().find(|(known, _)| *known == id);
         let clicked = view.map_or(Clicked::Nothing, |(_, view)| {
-            view.click(&mut self.desk, inside(area), mouse.at)
+            view.click(&mut self.context, inside(area), mouse.at)
         });
         let opens = match (self.view, clicked) {
             (ViewId::Overview, clicked) => had_focus && clicked != Clicked::Selected,
@@ -49,10 +49,10 @@ impl App {
 
     /// The view at a place of the screen, and its area with the border.
     fn place_at(&self, at: Position) -> Option<(ViewId, Rect)> {
-        let (width, height) = self.desk.size;
+        let (width, height) = self.context.size;
         let body = body(Rect::new(0, 0, width, height));
         let placed = match self.view {
-            ViewId::Overview => panels(body, &self.desk),
+            ViewId::Overview => panels(body, &self.context),
             view => vec![(view, body)],
         };
         placed.into_iter().find(|(_, area)| area.contains(at))

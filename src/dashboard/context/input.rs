@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::keys::Key;
 use super::mouse::Mouse;
+use crate::dashboard::keys::Key;
 use crate::evolution::EvolutionState;
 use crate::lab::Event;
 

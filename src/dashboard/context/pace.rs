@@ -17,12 +17,12 @@ pub struct Pace {
 
 impl Pace {
     /// Evolution went on for a while.
-    pub(super) fn tick(&mut self, elapsed: Duration) {
+    pub(in crate::dashboard) fn tick(&mut self, elapsed: Duration) {
         self.running += elapsed;
     }
 
     /// So many control steps have been computed.
-    pub(super) fn steps(&mut self, steps: u64) {
+    pub(in crate::dashboard) fn steps(&mut self, steps: u64) {
         let now = self.running;
         match self.steps.back_mut() {
             Some((at, last)) if *at == now => *last = steps,
@@ -34,7 +34,7 @@ impl Pace {
     }
 
     /// A generation is over.
-    pub(super) fn generation(&mut self, number: u64) {
+    pub(in crate::dashboard) fn generation(&mut self, number: u64) {
         let now = (self.running, number);
         self.generations = Some(match self.generations {
             // Generations told at once are the past of a run that was resumed.

@@ -22,7 +22,7 @@ pub struct Progress {
 ///
 /// Generations are shared, so that a model is cheaply kept as it was.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Model {
+pub struct RunHistory {
     generations: Vec<Arc<GenerationRecord>>,
     progress: Option<Progress>,
     paused: bool,
@@ -30,9 +30,9 @@ pub struct Model {
     ending: Option<Ending>,
 }
 
-impl Model {
+impl RunHistory {
     /// Takes in a fact.
-    pub fn fold(&mut self, event: Event) {
+    pub fn apply(&mut self, event: Event) {
         match event {
             Event::Started { .. } => {}
             Event::Generation(record) => self.add(*record),

@@ -6,24 +6,24 @@ use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::desk::{Chosen, Desk};
 use super::export;
-use super::header;
-use super::hints::useful;
-use super::input::{Effect, Input};
-use super::keys::{Action, Key, Scope};
-use super::look::Paint;
-use super::overlay::{self, Overlay};
-use super::panel::{SMALLEST, body, panel, too_small};
 use super::steering::{Steered, steer};
-use super::view_id::ViewId;
-use super::views::{self, View, panels};
+use crate::dashboard::chrome::header;
+use crate::dashboard::chrome::hints::useful;
+use crate::dashboard::chrome::overlay::{self, Overlay};
+use crate::dashboard::context::{Chosen, ViewContext};
+use crate::dashboard::context::{Effect, Input};
+use crate::dashboard::keys::{Action, Key, Scope};
+use crate::dashboard::look::Paint;
+use crate::dashboard::panel::{SMALLEST, body, panel, too_small};
+use crate::dashboard::view_id::ViewId;
+use crate::dashboard::views::{self, View, panels};
 use crate::lab::Event;
 use crate::lab::specimen::Start;
 
 /// The dashboard.
 pub struct App {
-    pub(super) desk: Desk,
+    pub(super) context: ViewContext,
     pub(super) views: Vec<(ViewId, Box<dyn View>)>,
     pub(super) view: ViewId,
     pub(super) overlay: Option<Overlay>,
@@ -31,11 +31,11 @@ pub struct App {
 }
 
 impl App {
-    /// A dashboard over what lies on a desk.
+    /// A dashboard over what lies on a context.
     #[must_use]
-    pub fn new(desk: Desk) -> Self {
+    pub fn new(context: ViewContext) -> Self {
         Self {
-            desk,
+            context,
             views: views::all(),
             view: ViewId::Overview,
             overlay: None,
@@ -45,8 +45,8 @@ impl App {
 
     /// What the person has chosen to look at.
     #[must_use]
-    pub fn desk(&self) -> &Desk {
-        &self.desk
+    pub fn context(&self) -> &ViewContext {
+        &self.context
     }
 
     /// The view on the screen.
@@ -65,22 +65,22 @@ impl App {
     /// The same dashboard, opened from somewhere that going back leads to.
     #[must_use]
     pub fn within(mut self, within: bool) -> Self {
-        self.desk.within = within;
+        self.context.within = within;
         self
     }
 
     /// Lets the trials that are watched begin there.
     #[must_use]
-    pub fn beginning_at(mut self, start: Option<Start>) -> Self {
+    pub fn starting_at(mut self, start: Option<Start>) -> Self {
         if let Some(start) = start {
-            self.desk.stage.begin_at(start);
+            self.context.player.begin_at(start);
         }
         self
     }
 
     /// Travels to the generation with this number, or the nearest that there is.
     pub fn travel_to(&mut self, generation: u64) -> Vec<Effect> {
-        self.desk.travel_to(generation);
+        self.context.travel_to(generation);
         self.dirty = true;
         self.prepare()
     }
@@ -105,7 +105,7 @@ impl App {
             }
             Input::Resize(columns, rows) => {
                 self.dirty = true;
-                self.desk.size = (columns, rows);
+                self.context.size = (columns, rows);
             }
             // Events may come in hundreds at once; what follows from them waits for the tick.
             Input::Event(event) => {
@@ -114,16 +114,16 @@ impl App {
             }
             Input::Closed => {
                 self.dirty = true;
-                self.desk.closed = true;
+                self.context.closed = true;
             }
             Input::Tick(elapsed) => self.tick(elapsed),
             Input::Population { generation, state } => {
                 self.dirty = true;
-                self.desk.stage.receive(generation, state);
+                self.context.player.receive(generation, state);
             }
             Input::Message(text) => {
                 self.dirty = true;
-                self.desk.say(text);
+                self.context.show_message(text);
             }
         }
         effects.extend(self.prepare());
@@ -131,52 +131,63 @@ impl App {
     }
 
     fn event(&mut self, event: Event) {
-        let desk = &mut self.desk;
+        let context = &mut self.context;
         match &event {
             Event::Progress { control_steps, .. } => {
                 // A run that is watched may be resumed by somebody.
-                desk.closed = false;
-                desk.pace.steps(*control_steps);
+                context.closed = false;
+                context.pace.steps(*control_steps);
             }
-            Event::Generation(record) => desk.pace.generation(record.generation),
-            Event::Paused => desk.stepping = false,
+            Event::Generation(record) => context.pace.generation(record.generation),
+            Event::Paused => context.stepping = false,
             _ => {}
         }
-        desk.live_mut().fold(event);
+        context.live_history_mut().apply(event);
         self.dirty = true;
     }
 
     fn tick(&mut self, elapsed: Duration) {
-        let said = self.desk.message().is_some();
-        self.dirty |= self.desk.tick(elapsed);
-        if self.on_screen().iter().any(|view| view.needs_stage()) {
-            self.dirty |= self.desk.stage.tick(elapsed);
+        let said = self.context.message().is_some();
+        self.dirty |= self.context.tick(elapsed);
+        if self.shows_rollout() {
+            self.dirty |= self.context.player.tick(elapsed);
         }
-        self.dirty |= said != self.desk.message().is_some();
+        self.dirty |= said != self.context.message().is_some();
     }
 
-    /// Puts on the stage what is looked at, and lets the views on the screen compute what
+    /// Puts on the player what is looked at, and lets the views on the screen compute what
     /// they draw.
     fn prepare(&mut self) -> Vec<Effect> {
         let on_screen = self.on_screen();
         let mut effects = Vec::new();
-        if on_screen.iter().any(|view| view.needs_stage()) {
-            let (wanted, by_choice) = (self.desk.wanted(), !self.desk.follows());
-            let load = self.desk.stage.want(wanted, by_choice);
+        if self.shows_rollout() {
+            let (wanted, by_choice) = (self.context.wanted(), !self.context.follows());
+            let load = self.context.player.want(wanted, by_choice);
             effects.extend(load.map(|generation| Effect::Load { generation }));
         }
         for (id, view) in &mut self.views {
             if on_screen.contains(id) {
-                view.prepare(&self.desk);
+                view.prepare(&self.context);
             }
         }
         effects
     }
 
+    fn shows_rollout(&self) -> bool {
+        let on_screen = self.on_screen();
+        let mut views = on_screen.iter().filter_map(|id| self.view_of(*id));
+        views.any(View::needs_rollout)
+    }
+
+    /// The view that the view on the screen leads to.
+    fn opens(&self) -> Option<ViewId> {
+        self.view_of(self.view)?.opens()
+    }
+
     fn on_screen(&self) -> Vec<ViewId> {
         match self.view {
             ViewId::Overview => {
-                let placed = panels(self.body(), &self.desk);
+                let placed = panels(self.body(), &self.context);
                 placed.into_iter().map(|(id, _)| id).collect()
             }
             view => vec![view],
@@ -185,7 +196,7 @@ impl App {
 
     /// Between header and hint bar.
     fn body(&self) -> Rect {
-        let (width, height) = self.desk.size;
+        let (width, height) = self.context.size;
         body(Rect::new(0, 0, width, height))
     }
 
@@ -193,7 +204,7 @@ impl App {
     /// has the focus.
     fn active(&self) -> ViewId {
         match self.view {
-            ViewId::Overview => self.desk.focus,
+            ViewId::Overview => self.context.focus,
             view => view,
         }
     }
@@ -202,7 +213,7 @@ impl App {
         if let Some(open) = self.overlay.take() {
             return self.key_in_overlay(open, key);
         }
-        let keys = &self.desk.keys;
+        let keys = &self.context.keys;
         let in_view = keys.in_view(key, self.active());
         let Some(action) = in_view.or_else(|| keys.in_view(key, self.view)) else {
             return Vec::new();
@@ -217,7 +228,7 @@ impl App {
             let Some((_, view)) = self.views.iter_mut().find(|(known, _)| *known == id) else {
                 continue;
             };
-            if let Some(effects) = view.act(&mut self.desk, action) {
+            if let Some(effects) = view.act(&mut self.context, action) {
                 return effects;
             }
         }
@@ -225,7 +236,7 @@ impl App {
     }
 
     fn key_in_overlay(&mut self, open: Overlay, key: Key) -> Vec<Effect> {
-        let keys = &self.desk.keys;
+        let keys = &self.context.keys;
         match open {
             Overlay::Help { scroll } => {
                 let action = keys.in_view(key, self.view);
@@ -237,7 +248,7 @@ impl App {
                 None => Vec::new(),
             },
             Overlay::Question(question) => match keys.in_scope(key, Scope::Question) {
-                Some(Action::Yes) => question.yes(&mut self.desk),
+                Some(Action::Yes) => question.yes(&mut self.context),
                 Some(Action::Detach) if question == overlay::Question::Quit => vec![Effect::Detach],
                 _ => Vec::new(),
             },
@@ -246,8 +257,8 @@ impl App {
 
     /// Scrolls help; what does not scroll closes it.
     pub(super) fn scroll_help(&mut self, scroll: u16, action: Option<Action>) {
-        let most = overlay::help_lines(&self.desk, self.view, &self.lessons()).len();
-        let scroll = overlay::scrolled(scroll, action, self.desk.size.1, most);
+        let most = overlay::help_lines(&self.context, self.view, &self.lessons()).len();
+        let scroll = overlay::scrolled(scroll, action, self.context.size.1, most);
         self.overlay = scroll.map(|scroll| Overlay::Help { scroll });
     }
 
@@ -257,7 +268,7 @@ impl App {
             self.view = view;
             return Vec::new();
         }
-        match steer(&mut self.desk, action) {
+        match steer(&mut self.context, action) {
             Steered::Nothing => {}
             Steered::Ask(question) => {
                 self.overlay = Some(Overlay::Question(question));
@@ -265,7 +276,7 @@ impl App {
             }
             Steered::Done(effect) => return effect.into_iter().collect(),
         }
-        let desk = &mut self.desk;
+        let context = &mut self.context;
         match action {
             Action::Help => self.overlay = Some(Overlay::Help { scroll: 0 }),
             Action::Export => self.overlay = Some(Overlay::Export),
@@ -273,37 +284,37 @@ impl App {
             Action::Redraw => return vec![Effect::Redraw],
             Action::Back if self.view == ViewId::Overview => return vec![Effect::Back],
             Action::Back => self.view = ViewId::Overview,
-            Action::Open if self.view == ViewId::Overview => self.view = desk.focus,
-            Action::Open => self.view = self.view.opens().unwrap_or(self.view),
-            Action::NextPanel => self.desk.focus = self.neighbour(1),
-            Action::PreviousPanel => self.desk.focus = self.neighbour(-1),
-            Action::Freeze => desk.toggle_freeze(),
-            Action::Best => desk.chosen = Chosen::Best,
-            Action::Earlier => desk.travel_by(-1),
-            Action::Later => desk.travel_by(1),
-            Action::MuchEarlier => desk.travel_by(-10),
-            Action::MuchLater => desk.travel_by(10),
-            Action::First => desk.travel_to(0),
-            Action::Follow => desk.travel_to(u64::MAX),
-            Action::Play => desk.toggle_play(),
-            Action::Halt => desk.stage.toggle_halt(),
-            Action::StepRollout => desk.stage.step(),
-            Action::Faster => desk.stage.change_speed(true),
-            Action::Slower => desk.stage.change_speed(false),
-            Action::Restart => desk.stage.restart(),
+            Action::Open if self.view == ViewId::Overview => self.view = context.focus,
+            Action::Open => self.view = self.opens().unwrap_or(self.view),
+            Action::NextPanel => self.context.focus = self.neighbour(1),
+            Action::PreviousPanel => self.context.focus = self.neighbour(-1),
+            Action::Freeze => context.toggle_freeze(),
+            Action::Best => context.chosen = Chosen::Best,
+            Action::Earlier => context.travel_by(-1),
+            Action::Later => context.travel_by(1),
+            Action::MuchEarlier => context.travel_by(-10),
+            Action::MuchLater => context.travel_by(10),
+            Action::First => context.travel_to(0),
+            Action::Follow => context.travel_to(u64::MAX),
+            Action::Play => context.toggle_play(),
+            Action::Halt => context.player.toggle_halt(),
+            Action::StepRollout => context.player.step(),
+            Action::Faster => context.player.change_speed(true),
+            Action::Slower => context.player.change_speed(false),
+            Action::Restart => context.player.restart(),
             Action::NextTrial => {
-                desk.stage.next_trial();
-                if let Some(rollout) = desk.stage.rollout() {
+                context.player.next_trial();
+                if let Some(rollout) = context.player.rollout() {
                     let text =
                         format!("trial {} begins with the next step", rollout.status().trial);
-                    desk.say(text);
+                    context.show_message(text);
                 }
             }
-            Action::Mark => desk.mark(),
+            Action::Mark => context.mark(),
             Action::Theme => {
-                desk.look.next_theme();
-                let theme = desk.look.theme().to_owned();
-                desk.say(format!("theme: {theme}"));
+                context.look.next_theme();
+                let theme = context.look.theme().to_owned();
+                context.show_message(format!("theme: {theme}"));
             }
             _ => {}
         }
@@ -312,13 +323,13 @@ impl App {
 
     /// The panel after, or before, the one that has the focus.
     fn neighbour(&self, by: isize) -> ViewId {
-        let placed = panels(self.body(), &self.desk);
-        let here = placed.iter().position(|(id, _)| *id == self.desk.focus);
+        let placed = panels(self.body(), &self.context);
+        let here = placed.iter().position(|(id, _)| *id == self.context.focus);
         let count = placed.len().max(1) as isize;
         let next = here.map_or(0, |here| (here as isize + by).rem_euclid(count));
         placed
             .get(next as usize)
-            .map_or(self.desk.focus, |(id, _)| *id)
+            .map_or(self.context.focus, |(id, _)| *id)
     }
 
     fn view_of(&self, id: ViewId) -> Option<&dyn View> {
@@ -330,8 +341,8 @@ impl App {
         let active = self.active();
         let view = self.view_of(active);
         let (extension, contents) = match action {
-            Action::ExportDot => ("dot", view.and_then(|view| view.dot(&self.desk))),
-            Action::ExportCsv => ("csv", view.and_then(|view| view.csv(&self.desk))),
+            Action::ExportDot => ("dot", view.and_then(|view| view.dot(&self.context))),
+            Action::ExportCsv => ("csv", view.and_then(|view| view.csv(&self.context))),
             Action::ExportText => ("txt", Some(self.rendered(export::FrameFormat::Text))),
             Action::ExportAnsi => ("ansi", Some(self.rendered(export::FrameFormat::Ansi))),
             Action::ExportSvg => ("svg", Some(self.rendered(export::FrameFormat::Svg))),
@@ -343,14 +354,17 @@ impl App {
         };
         match contents {
             Some(contents) => {
-                let generation = self.desk.shown().map_or(0, |record| record.generation);
+                let generation = self.context.shown().map_or(0, |record| record.generation);
                 let name = format!("{}-generation{generation}.{extension}", what.name());
-                vec![Effect::Export(super::input::Export { name, contents })]
+                vec![Effect::Export(crate::dashboard::context::Export {
+                    name,
+                    contents,
+                })]
             }
             None => {
                 let title = what.title();
-                self.desk
-                    .say(format!("{title} has no {extension} to export"));
+                self.context
+                    .show_message(format!("{title} has no {extension} to export"));
                 Vec::new()
             }
         }
@@ -359,7 +373,7 @@ impl App {
     /// The frame as it would be on a terminal of the present size.
     #[must_use]
     pub fn frame(&self) -> Buffer {
-        let (width, height) = self.desk.size;
+        let (width, height) = self.context.size;
         let mut buffer = Buffer::empty(Rect::new(0, 0, width, height));
         self.draw_on(&mut buffer);
         buffer
@@ -376,25 +390,25 @@ impl App {
 
     /// Draws everything on a buffer of any size.
     pub fn draw_on(&self, buffer: &mut Buffer) {
-        let (desk, area) = (&self.desk, buffer.area);
-        buffer.set_style(area, desk.look.style(Paint::Text));
+        let (context, area) = (&self.context, buffer.area);
+        buffer.set_style(area, context.look.style(Paint::Text));
         if area.width < SMALLEST.0 || area.height < SMALLEST.1 {
-            return too_small(&desk.look, area, buffer);
+            return too_small(&context.look, area, buffer);
         }
-        header::draw(desk, self.view, area, buffer);
+        header::draw(context, self.view, area, buffer);
         match self.view {
             ViewId::Overview => {
-                for (id, place) in panels(body(area), desk) {
-                    self.draw_panel(id, place, id == desk.focus, buffer);
+                for (id, place) in panels(body(area), context) {
+                    self.draw_panel(id, place, id == context.focus, buffer);
                 }
             }
             view => self.draw_panel(view, body(area), false, buffer),
         }
         let hints = self.view_of(self.active());
-        let hints = hints.map_or(Vec::new(), |active| useful(desk, self.view, active));
-        header::hint_bar(desk, &hints, area, buffer);
+        let hints = hints.map_or(Vec::new(), |active| useful(context, self.view, active));
+        header::hint_bar(context, &hints, area, buffer);
         if let Some(open) = &self.overlay {
-            overlay::draw(open, desk, self.view, &self.lessons(), area, buffer);
+            overlay::draw(open, context, self.view, &self.lessons(), area, buffer);
         }
     }
 
@@ -402,7 +416,7 @@ impl App {
     fn lessons(&self) -> Vec<(&'static str, &'static str)> {
         let mut lessons = Vec::new();
         for id in [self.view, self.active()] {
-            let lesson = self.view_of(id).map_or("", |view| view.lesson());
+            let lesson = self.view_of(id).map_or("", |view| view.help_text());
             if !lessons.contains(&(id.title(), lesson)) {
                 lessons.push((id.title(), lesson));
             }
@@ -412,14 +426,14 @@ impl App {
 
     fn draw_panel(&self, id: ViewId, area: Rect, focused: bool, buffer: &mut Buffer) {
         let Some(view) = self.view_of(id) else { return };
-        let caption = view.caption(&self.desk);
+        let caption = view.caption(&self.context);
         let inside = panel(
-            &self.desk.look,
+            &self.context.look,
             area,
             focused,
             (id.title(), &caption),
             buffer,
         );
-        view.draw(&self.desk, inside, buffer);
+        view.draw(&self.context, inside, buffer);
     }
 }

@@ -1,9 +1,9 @@
 //! Keys that steer evolution, where it can be steered.
 
-use super::desk::{Activity, Desk, Mode};
-use super::input::Effect;
-use super::keys::Action;
-use super::overlay::Question;
+use crate::dashboard::chrome::overlay::Question;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::{Activity, Mode, ViewContext};
+use crate::dashboard::keys::Action;
 
 /// What became of an action.
 pub(super) enum Steered {
@@ -16,11 +16,11 @@ pub(super) enum Steered {
 }
 
 /// Does what an action asks of the run.
-pub(super) fn steer(desk: &mut Desk, action: Action) -> Steered {
-    let activity = desk.activity();
+pub(super) fn steer(context: &mut ViewContext, action: Action) -> Steered {
+    let activity = context.activity();
     let over = matches!(activity, Activity::Finished | Activity::Stopped);
     let wanted = match action {
-        Action::Quit if desk.mode == Mode::Live && !over => return Steered::Ask(Question::Quit),
+        Action::Quit if context.mode == Mode::Live && !over => return Steered::Ask(Question::Quit),
         Action::Quit => return Steered::Done(Some(Effect::Quit)),
         Action::Pause if activity == Activity::Paused => Effect::Resume,
         Action::Pause => Effect::Pause,
@@ -29,7 +29,7 @@ pub(super) fn steer(desk: &mut Desk, action: Action) -> Steered {
         Action::Stop => Effect::Stop,
         _ => return Steered::Nothing,
     };
-    let why_not = match (desk.mode, activity) {
+    let why_not = match (context.mode, activity) {
         (Mode::Replay, _) => Some("a replay: there is no evolution to steer"),
         (Mode::Watch, _) => Some("another process's run: it can be watched, not steered"),
         (_, Activity::Finished) => Some("evolution is over"),
@@ -37,13 +37,13 @@ pub(super) fn steer(desk: &mut Desk, action: Action) -> Steered {
         _ => None,
     };
     if let Some(why_not) = why_not {
-        desk.say(why_not);
+        context.show_message(why_not);
         return Steered::Done(None);
     }
     match wanted {
         Effect::Stop => return Steered::Ask(Question::Stop),
-        Effect::Step => desk.stepping = true,
-        Effect::Resume | Effect::Pause => desk.stepping = false,
+        Effect::Step => context.stepping = true,
+        Effect::Resume | Effect::Pause => context.stepping = false,
         _ => {}
     }
     Steered::Done(Some(wanted))

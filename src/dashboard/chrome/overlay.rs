@@ -4,17 +4,17 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Clear, Widget};
 
-use super::desk::Desk;
-use super::input::Effect;
-use super::keys::{Action, KeyMap, Scope};
-use super::look::lines::mark_more;
-use super::look::{Look, Paint, fitted, put, width, wrapped};
-use super::panel::panel;
-use super::view_id::ViewId;
+use crate::dashboard::context::Effect;
+use crate::dashboard::context::ViewContext;
+use crate::dashboard::keys::{Action, KeyMap, Scope};
+use crate::dashboard::look::lines::mark_more;
+use crate::dashboard::look::{Look, Paint, fitted, put, width, wrapped};
+use crate::dashboard::panel::panel;
+use crate::dashboard::view_id::ViewId;
 
 /// What is open over the view.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Overlay {
+pub(in crate::dashboard) enum Overlay {
     /// What there is to see, and all keys.
     Help {
         /// Lines that are above the screen.
@@ -28,7 +28,7 @@ pub(super) enum Overlay {
 
 /// Something to be answered before it is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Question {
+pub(in crate::dashboard) enum Question {
     /// Leave while the run goes on?
     Quit,
     /// Stop the run?
@@ -50,11 +50,11 @@ impl Question {
         }
     }
 
-    pub(super) fn yes(self, desk: &mut Desk) -> Vec<Effect> {
+    pub(in crate::dashboard) fn yes(self, context: &mut ViewContext) -> Vec<Effect> {
         match self {
             Self::Quit => vec![Effect::Quit],
             Self::Stop => {
-                desk.stopping = true;
+                context.stopping = true;
                 vec![Effect::Stop]
             }
         }
@@ -62,12 +62,12 @@ impl Question {
 }
 
 /// A line of an overlay: a key or nothing, and a text.
-pub(super) type Line = (String, String, Paint);
+pub(in crate::dashboard) type Line = (String, String, Paint);
 
 /// Draws what is open.
-pub(super) fn draw(
+pub(in crate::dashboard) fn draw(
     open: &Overlay,
-    desk: &Desk,
+    context: &ViewContext,
     view: ViewId,
     lessons: &[(&str, &str)],
     area: Rect,
@@ -75,14 +75,14 @@ pub(super) fn draw(
 ) {
     match open {
         Overlay::Help { scroll } => {
-            let lines = help_lines(desk, view, lessons);
+            let lines = help_lines(context, view, lessons);
             let titles = ("Help", view.title());
-            window(&desk.look, titles, &lines, *scroll, area, buffer);
+            window(&context.look, titles, &lines, *scroll, area, buffer);
         }
         Overlay::Export => {
-            let lines = of_scope(desk, Scope::ExportMenu);
+            let lines = of_scope(context, Scope::ExportMenu);
             window(
-                &desk.look,
+                &context.look,
                 ("Export", "any other key: nothing"),
                 &lines,
                 0,
@@ -93,31 +93,31 @@ pub(super) fn draw(
         Overlay::Question(question) => {
             let mut lines = vec![plain(question.text())];
             let answers = question.answers().iter();
-            lines.extend(answers.map(|&action| line(&desk.keys, action)));
-            window(&desk.look, ("Question", ""), &lines, 0, area, buffer);
+            lines.extend(answers.map(|&action| line(&context.keys, action)));
+            window(&context.look, ("Question", ""), &lines, 0, area, buffer);
         }
     }
 }
 
 /// A text without a key.
-pub(super) fn plain(text: &str) -> Line {
+pub(in crate::dashboard) fn plain(text: &str) -> Line {
     (String::new(), text.to_owned(), Paint::Text)
 }
 
 /// An action and its keys.
-pub(super) fn line(keys: &KeyMap, action: Action) -> Line {
+pub(in crate::dashboard) fn line(keys: &KeyMap, action: Action) -> Line {
     let keys: Vec<_> = keys.keys(action).iter().map(ToString::to_string).collect();
     let description = action.description().trim_end_matches('.');
     (keys.join(" "), description.to_owned(), Paint::Text)
 }
 
-fn of_scope(desk: &Desk, scope: Scope) -> Vec<Line> {
+fn of_scope(context: &ViewContext, scope: Scope) -> Vec<Line> {
     let actions = Action::ALL.iter().filter(|action| action.scope() == scope);
-    actions.map(|&action| line(&desk.keys, action)).collect()
+    actions.map(|&action| line(&context.keys, action)).collect()
 }
 
 /// Where help of some lines has scrolled to after an action; `None` where that closes it.
-pub(super) fn scrolled(
+pub(in crate::dashboard) fn scrolled(
     scroll: u16,
     action: Option<Action>,
     rows: u16,
@@ -140,10 +140,14 @@ pub(super) fn scrolled(
 const READABLE: usize = 88;
 
 /// What there is to see, and all keys that do something there.
-pub(super) fn help_lines(desk: &Desk, view: ViewId, lessons: &[(&str, &str)]) -> Vec<Line> {
+pub(in crate::dashboard) fn help_lines(
+    context: &ViewContext,
+    view: ViewId,
+    lessons: &[(&str, &str)],
+) -> Vec<Line> {
     let mut lines = Vec::new();
     // Border, and a blank on either side.
-    let columns = usize::from(desk.size.0.saturating_sub(4)).min(READABLE);
+    let columns = usize::from(context.size.0.saturating_sub(4)).min(READABLE);
     for (title, lesson) in lessons {
         lines.push((String::new(), (*title).to_owned(), Paint::Title));
         for paragraph in lesson.split("\n\n") {
@@ -162,7 +166,7 @@ pub(super) fn help_lines(desk: &Desk, view: ViewId, lessons: &[(&str, &str)]) ->
     ];
     for (title, counts) in groups {
         let actions = Action::ALL.iter().filter(|action| counts(action.scope()));
-        let of_group: Vec<_> = actions.map(|&action| line(&desk.keys, action)).collect();
+        let of_group: Vec<_> = actions.map(|&action| line(&context.keys, action)).collect();
         if !of_group.is_empty() {
             lines.push((String::new(), title.to_owned(), Paint::Title));
             lines.extend(of_group);
@@ -174,7 +178,7 @@ pub(super) fn help_lines(desk: &Desk, view: ViewId, lessons: &[(&str, &str)]) ->
 }
 
 /// Draws lines in a window in the middle of the screen.
-pub(super) fn window(
+pub(in crate::dashboard) fn window(
     look: &Look,
     titles: (&str, &str),
     lines: &[Line],

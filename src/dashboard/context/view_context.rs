@@ -4,12 +4,12 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::keys::KeyMap;
-use super::look::{Look, Paint};
-use super::model::Model;
+use super::history::RunHistory;
 use super::pace::Pace;
-use super::stage::{Stage, Subject};
-use super::view_id::ViewId;
+use super::rollout_player::{RolloutPlayer, Subject};
+use crate::dashboard::keys::KeyMap;
+use crate::dashboard::look::{Look, Paint};
+use crate::dashboard::view_id::ViewId;
 use crate::evolution::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Tree, parse};
 use crate::lab::departures;
@@ -39,7 +39,7 @@ pub enum Mode {
 
 /// The generation that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Time {
+pub enum ShownGeneration {
     /// The latest.
     Latest,
     /// The one with this number.
@@ -75,7 +75,7 @@ pub enum Activity {
 }
 
 /// What every view reads: the run, and what the person has chosen to see of it.
-pub struct Desk {
+pub struct ViewContext {
     /// The scenario and its world.
     pub bench: &'static dyn Bench,
     /// The run folder, for people.
@@ -83,7 +83,7 @@ pub struct Desk {
     /// The settings in which the scenario departs from the embedded one of its name.
     pub changed: Vec<String>,
     /// The rollout of the individual that is looked at.
-    pub stage: Stage,
+    pub player: RolloutPlayer,
     /// How the dashboard stands to its run.
     pub mode: Mode,
     /// Themes and signs.
@@ -108,18 +108,18 @@ pub struct Desk {
     pub playing: bool,
     /// Whether the dashboard was opened from somewhere that going back leads to.
     pub within: bool,
-    pub(super) stepping: bool,
-    pub(super) stopping: bool,
-    pub(super) closed: bool,
-    time: Time,
-    live: Model,
-    held: Option<Model>,
+    pub(in crate::dashboard) stepping: bool,
+    pub(in crate::dashboard) stopping: bool,
+    pub(in crate::dashboard) closed: bool,
+    time: ShownGeneration,
+    live: RunHistory,
+    held: Option<RunHistory>,
     played: Duration,
     log: VecDeque<(String, Duration)>,
 }
 
-impl Desk {
-    /// A desk at the beginning of a run.
+impl ViewContext {
+    /// A context at the beginning of a run.
     #[must_use]
     pub fn new(
         bench: &'static dyn Bench,
@@ -133,7 +133,7 @@ impl Desk {
             bench,
             folder,
             changed: changed.iter().map(ToString::to_string).collect(),
-            stage: Stage::new(bench),
+            player: RolloutPlayer::new(bench),
             mode,
             look,
             keys,
@@ -149,8 +149,8 @@ impl Desk {
             stepping: false,
             stopping: false,
             closed: mode == Mode::Replay,
-            time: Time::Latest,
-            live: Model::default(),
+            time: ShownGeneration::Latest,
+            live: RunHistory::default(),
             held: None,
             played: Duration::ZERO,
             log: VecDeque::new(),
@@ -177,17 +177,17 @@ impl Desk {
 
     /// The run as it is, whatever is shown.
     #[must_use]
-    pub fn live(&self) -> &Model {
+    pub fn live_history(&self) -> &RunHistory {
         &self.live
     }
 
     /// The run as it is shown: as it is, or as it was when the view was frozen.
     #[must_use]
-    pub fn model(&self) -> &Model {
+    pub fn history(&self) -> &RunHistory {
         self.held.as_ref().unwrap_or(&self.live)
     }
 
-    pub(super) fn live_mut(&mut self) -> &mut Model {
+    pub(in crate::dashboard) fn live_history_mut(&mut self) -> &mut RunHistory {
         &mut self.live
     }
 
@@ -222,7 +222,7 @@ impl Desk {
     }
 
     /// Sign, word and paint of what evolution is doing.
-    pub(super) fn activity_mark(&self) -> (&'static str, &'static str, Paint) {
+    pub(in crate::dashboard) fn activity_mark(&self) -> (&'static str, &'static str, Paint) {
         let signs = self.look.signs;
         match self.activity() {
             Activity::Training => (signs.running, "TRAINING", Paint::Good),
@@ -240,17 +240,17 @@ impl Desk {
 
     /// The generation that the person travelled to.
     #[must_use]
-    pub fn time(&self) -> Time {
+    pub fn time(&self) -> ShownGeneration {
         self.time
     }
 
     /// The generation that is shown; `None` before the first has lived.
     #[must_use]
     pub fn shown(&self) -> Option<&Arc<GenerationRecord>> {
-        let model = self.model();
+        let model = self.history();
         match self.time {
-            Time::Latest => model.latest(),
-            Time::At(number) => model.generation(number).or_else(|| model.latest()),
+            ShownGeneration::Latest => model.latest(),
+            ShownGeneration::At(number) => model.generation(number).or_else(|| model.latest()),
         }
     }
 
@@ -264,20 +264,20 @@ impl Desk {
     /// Travels to the generation with this number, or the nearest that there is; the
     /// last one is followed as evolution goes on.
     pub fn travel_to(&mut self, number: u64) {
-        let generations = self.model().generations();
+        let generations = self.history().generations();
         let (Some(first), Some(last)) = (generations.first(), generations.last()) else {
             return;
         };
         let (first, last) = (first.generation, last.generation);
         self.time = match number {
-            number if number >= last => Time::Latest,
-            number => Time::At(number.max(first)),
+            number if number >= last => ShownGeneration::Latest,
+            number => ShownGeneration::At(number.max(first)),
         };
     }
 
     /// Travels some generations on, or back.
     pub fn travel_by(&mut self, by: isize) {
-        let generations = self.model().generations();
+        let generations = self.history().generations();
         let shown = self.shown().map(|record| record.generation);
         let here = generations
             .iter()
@@ -293,13 +293,13 @@ impl Desk {
     pub fn toggle_play(&mut self) {
         self.playing = !self.playing;
         self.played = Duration::ZERO;
-        if self.playing && self.time == Time::Latest {
+        if self.playing && self.time == ShownGeneration::Latest {
             self.travel_to(0);
         }
     }
 
     /// Lets time go by. Whether anything but the clock has changed.
-    pub(super) fn tick(&mut self, elapsed: Duration) -> bool {
+    pub(in crate::dashboard) fn tick(&mut self, elapsed: Duration) -> bool {
         self.clock += elapsed;
         if matches!(self.activity(), Activity::Running | Activity::Stepping) {
             self.pace.tick(elapsed);
@@ -313,7 +313,7 @@ impl Desk {
         while self.played >= period && self.playing {
             self.played -= period;
             self.travel_by(1);
-            self.playing = self.time != Time::Latest;
+            self.playing = self.time != ShownGeneration::Latest;
         }
         before != self.time
     }
@@ -334,7 +334,7 @@ impl Desk {
     pub fn mark(&mut self) {
         if let Some(id) = self.selected().map(|individual| individual.id) {
             self.marked = Some(id);
-            self.say(format!(
+            self.show_message(format!(
                 "individual {id} is marked: others are compared with it"
             ));
         }
@@ -344,7 +344,7 @@ impl Desk {
     /// with: the marked one, else the best, else the second.
     #[must_use]
     pub fn rivals(&self) -> Option<[&RankedRecord; 2]> {
-        let (generation, selected) = self.looked_at()?;
+        let (generation, selected) = self.inspected()?;
         let individuals = &self.live.generation(generation)?.individuals;
         let mut others = individuals.iter().filter(|other| other.id != selected.id);
         let marked = others.clone().find(|other| Some(other.id) == self.marked);
@@ -357,11 +357,11 @@ impl Desk {
         parse(&individual.tree, self.catalogue()).ok()
     }
 
-    /// The individual on the stage as it was in the generation that it was taken from, else
+    /// The individual on the player as it was in the generation that it was taken from, else
     /// the selected one of the generation shown; with the number of the generation.
     #[must_use]
-    pub fn looked_at(&self) -> Option<(u64, &RankedRecord)> {
-        let staged = self.stage.subject().and_then(|subject| {
+    pub fn inspected(&self) -> Option<(u64, &RankedRecord)> {
+        let staged = self.player.subject().and_then(|subject| {
             let record = self.live.generation(subject.generation)?;
             let mut individuals = record.individuals.iter();
             let staged = individuals.find(|individual| individual.id == subject.id)?;
@@ -372,8 +372,8 @@ impl Desk {
 
     /// The hierarchy of that individual.
     #[must_use]
-    pub fn looked_at_tree(&self) -> Option<Tree> {
-        self.tree(self.looked_at()?.1)
+    pub fn inspected_tree(&self) -> Option<Tree> {
+        self.tree(self.inspected()?.1)
     }
 
     /// The node of a hierarchy that is selected: the last where it has not so many.
@@ -382,24 +382,24 @@ impl Desk {
         self.node.min(tree.nodes().len().saturating_sub(1))
     }
 
-    /// The individual that should be on the stage.
-    pub(super) fn wanted(&self) -> Option<Subject> {
+    /// The individual that should be on the player.
+    pub(in crate::dashboard) fn wanted(&self) -> Option<Subject> {
         Some(Subject {
             generation: self.shown()?.generation,
             id: self.selected()?.id,
         })
     }
 
-    /// Whether evolution chooses what is on the stage.
-    pub(super) fn follows(&self) -> bool {
+    /// Whether evolution chooses what is on the player.
+    pub(in crate::dashboard) fn follows(&self) -> bool {
         self.mode != Mode::Replay
             && self.chosen == Chosen::Best
-            && self.time == Time::Latest
+            && self.time == ShownGeneration::Latest
             && !self.frozen()
     }
 
     /// Says something to the person.
-    pub fn say(&mut self, text: impl Into<String>) {
+    pub fn show_message(&mut self, text: impl Into<String>) {
         if self.log.len() == LOG {
             self.log.pop_front();
         }

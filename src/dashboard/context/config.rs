@@ -7,8 +7,8 @@ use serde::Deserialize;
 use thiserror::Error;
 use toml::Spanned;
 
-use super::keys::{Action, Collision, Key, KeyError, KeyMap};
-use super::look::{Paint, StyleError, Theme};
+use crate::dashboard::keys::{Action, Collision, Key, KeyError, KeyMap};
+use crate::dashboard::look::{Paint, StyleError, Theme};
 use crate::files::{FileError, read_text};
 
 /// Largest file that is read, in bytes.

@@ -1,0 +1,11 @@
+//! The dashboard of one run: its state, what keys and clicks do to it, and its frames.
+
+mod clicks;
+mod export;
+mod offscreen;
+mod state;
+mod steering;
+
+pub use export::{FrameFormat, render};
+pub use offscreen::OffscreenDashboard;
+pub use state::App;
