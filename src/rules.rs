@@ -1,13 +1,12 @@
-//! Rules that settings obey: what is broken, where, what was found there and what is
-//! allowed.
+//! Checks of settings: which rule is broken, where, what was found there and what is allowed.
 
 use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 
-/// A rule that settings break.
+/// A broken rule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// Where, as a dotted path: `world.foraging.arena.walls_mm[3]`.
+    /// Where it is broken, as a dotted path: `world.foraging.arena.walls_mm[3]`.
     pub place: String,
     /// The value found there.
     pub found: String,
@@ -16,7 +15,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// The problem of `found` at `place`, where `allowed` is allowed.
+    /// Creates the problem that `found` stands at `place`, where only `allowed` is allowed.
     pub fn new(place: impl Into<String>, found: impl Display, allowed: impl Display) -> Self {
         Self {
             place: place.into(),
@@ -25,7 +24,7 @@ impl Problem {
         }
     }
 
-    /// This problem, its place below `outer`.
+    /// Returns this problem with its place moved below `outer`.
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {
         self.place = join(outer, &self.place);
@@ -44,7 +43,7 @@ impl Display for Problem {
     }
 }
 
-/// Collects problems; knows the place it is at.
+/// Collects problems, and keeps track of the place that is being checked.
 #[derive(Debug, Default)]
 pub struct Check {
     place: String,
@@ -52,13 +51,13 @@ pub struct Check {
 }
 
 impl Check {
-    /// The problems found.
+    /// Returns the problems found.
     #[must_use]
     pub fn problems(self) -> Vec<Problem> {
         self.problems
     }
 
-    /// Checks `rules` at `part` of the present place.
+    /// Runs `rules` at `part` of the current place.
     pub fn within(&mut self, part: &str, rules: impl FnOnce(&mut Self)) {
         let inner = join(&self.place, part);
         let outer = std::mem::replace(&mut self.place, inner);
@@ -66,19 +65,19 @@ impl Check {
         self.place = outer;
     }
 
-    /// At `part` of the present place stands `found`, and `holds` says whether it may.
+    /// Adds a problem unless `holds`: `found` stands at `part` of the current place.
     pub fn rule(&mut self, holds: bool, part: &str, found: impl Display, allowed: impl Display) {
         if !holds {
             self.add(Problem::new(part, found, allowed));
         }
     }
 
-    /// Adds a problem, whose place is below the present one.
+    /// Adds a problem whose place is relative to the current one.
     pub fn add(&mut self, problem: Problem) {
         self.problems.push(problem.within(&self.place));
     }
 
-    /// `found` lies in `allowed`; a NaN lies nowhere.
+    /// Checks that `found` lies in `allowed`. A NaN never does.
     pub fn range<T: PartialOrd + Display>(
         &mut self,
         part: &str,
@@ -90,13 +89,35 @@ impl Check {
         self.rule(holds, part, found, words);
     }
 
-    /// A reward is finite, and small enough for sums of it to stay exact enough.
+    /// Checks numbers, each given as its place, its value and its allowed range.
+    pub fn ranges<const N: usize>(&mut self, numbers: [(&str, f64, RangeInclusive<f64>); N]) {
+        for (part, found, allowed) in numbers {
+            self.range(part, found, allowed);
+        }
+    }
+
+    /// Checks that `name` can name a folder: see [`is_name`].
+    pub fn name(&mut self, part: &str, name: &str) {
+        self.rule(is_name(name), part, format!("{name:?}"), NAMES);
+    }
+
+    /// Checks that a reward is finite and so small that sums of rewards keep their precision.
     pub fn reward(&mut self, part: &str, reward: f64) {
         self.range(part, reward, -1000.0..=1000.0);
     }
 }
 
-/// The dotted path of `part` below `place`.
+/// The names that [`is_name`] accepts, for messages.
+pub const NAMES: &str = "1 to 64 of a-z, 0-9, '-', '_' and '.', not starting with '.' or '-'";
+
+/// Returns whether `name` can name a scenario, a plan or an arm, and so a folder.
+#[must_use]
+pub fn is_name(name: &str) -> bool {
+    let letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
+    (1..=64).contains(&name.len()) && name.chars().all(letter) && !name.starts_with(['.', '-'])
+}
+
+/// Returns the dotted path of `part` below `place`.
 fn join(place: &str, part: &str) -> String {
     if place.is_empty() || part.is_empty() || part.starts_with('[') {
         format!("{place}{part}")

@@ -1,15 +1,15 @@
-//! The shipped scenarios, built into the program so that they work in any folder.
+//! The scenarios and plans that are part of the program, so that they work in any folder.
 
-/// A scenario, or a plan, that is part of the program.
+/// A scenario or a plan that is part of the program.
 #[derive(Clone, Copy, Debug)]
 pub struct Embedded {
-    /// The name it is run by.
+    /// Its name, as given on the command line.
     pub name: &'static str,
     /// Its JSON text.
     pub json: &'static str,
 }
 
-/// The files of a folder by name, built into the program.
+/// Embeds the JSON files of a folder with the given names.
 macro_rules! embedded {
     ($folder:literal: $($name:literal),+ $(,)?) => {
         &[$(Embedded {
@@ -22,13 +22,14 @@ macro_rules! embedded {
 /// All embedded scenarios: the files of `scenarios/`.
 pub const EMBEDDED: &[Embedded] = embedded!["scenarios": "cliff", "environment-1", "environment-2", "environment-3", "four-rooms", "smoke", "taxi", "taxi-fickle"];
 
-/// All embedded plans of studies, the files of `scenarios/studies/`; the names of their
-/// scenarios are those of embedded ones.
+/// All embedded plans of studies: the files of `scenarios/studies/`. They use embedded
+/// scenarios only.
 pub const EMBEDDED_PLANS: &[Embedded] =
     embedded!["scenarios/studies": "evolving-taxi", "mutation", "thesis"];
 
-/// The names of the embedded scenarios, for messages.
-pub(super) fn names() -> String {
-    let names: Vec<_> = EMBEDDED.iter().map(|embedded| embedded.name).collect();
+/// Returns the names of embedded scenarios or plans, for messages.
+#[must_use]
+pub fn names(embedded: &[Embedded]) -> String {
+    let names: Vec<_> = embedded.iter().map(|embedded| embedded.name).collect();
     names.join(", ")
 }

@@ -1,14 +1,10 @@
-//! What an experiment is: the JSON model of a scenario, its defaults and its rules.
-//!
-//! A scenario file names a world, the settings of learning and the settings of
-//! evolution. Whatever it leaves out has a default with a source ([`defaults`]);
-//! whatever it says that does not exist or cannot be is an error that names the
-//! file, the place, the value found and the values allowed.
+#![doc = include_str!("README.md")]
 
 use std::path::Path;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 use crate::files::{FileError, parse_json, read_text, stated_format};
 use crate::rules::Problem;
@@ -16,13 +12,11 @@ use crate::worlds::WorldSettings;
 
 pub mod defaults;
 mod embedded;
-mod error;
 mod overrides;
 mod rules;
 mod settings;
 
-pub use embedded::{EMBEDDED, EMBEDDED_PLANS, Embedded};
-pub use error::ScenarioError;
+pub use embedded::{EMBEDDED, EMBEDDED_PLANS, Embedded, names};
 pub use settings::{
     CompletionBootstrap, CompositeChoice, CoolOn, EvolutionSettings, Inheritance, LearningSettings,
     PrimitiveLearning, PseudoReward, Selection, Variation,
@@ -31,24 +25,24 @@ pub use settings::{
 /// The version of the scenario format that this program reads.
 pub const FORMAT: u32 = 1;
 
-/// Largest scenario file that is read, in bytes; the shipped ones are a hundredth of it.
+/// Largest scenario file that is read, in bytes. The embedded ones are a hundred times smaller.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
 
-/// A whole experiment: a world, how its agents learn, how their hierarchies evolve.
+/// One experiment: a world, how agents learn in it, and how their hierarchies evolve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "maxq-lab scenario")]
 pub struct Scenario {
-    /// Version of this format; 1.
+    /// Version of this format: 1.
     pub format: u32,
-    /// Short name, used in run folders: lower-case letters, digits, `-`, `_` and `.`.
+    /// Short name, used in the names of run folders: lower-case letters, digits, `-`, `_`, `.`.
     pub name: String,
-    /// What the scenario is for, in a sentence.
+    /// Purpose of the scenario, in one sentence.
     #[serde(default)]
     pub description: String,
-    /// Where the agent acts.
+    /// The world in which agents act.
     pub world: WorldSettings,
-    /// How it learns.
+    /// How agents learn.
     #[serde(default)]
     pub learning: LearningSettings,
     /// How hierarchies evolve.
@@ -56,11 +50,11 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads a scenario by `name`: a file where there is one, else an embedded scenario.
+    /// Loads the file `name` if it exists, and else the embedded scenario of that name.
     ///
     /// # Errors
-    /// When neither exists, or the file cannot be read, is too large, is not JSON of
-    /// this model, or breaks a rule.
+    /// When neither exists, or the file cannot be read, is too large, is not a scenario, or
+    /// breaks a rule.
     pub fn load(name: &str) -> Result<Self, ScenarioError> {
         let path = Path::new(name);
         if path.is_file() {
@@ -68,7 +62,7 @@ impl Scenario {
         }
         match EMBEDDED.iter().find(|embedded| embedded.name == name) {
             Some(embedded) => Self::parse(embedded.json, embedded.name),
-            // Not a regular file: a pipe can be read, a folder says why not.
+            // A pipe is not a regular file but can be read; reading a folder gives the error.
             None if path.exists() => Self::read(path),
             None => Err(ScenarioError::NotFound {
                 name: name.to_owned(),
@@ -85,10 +79,10 @@ impl Scenario {
         Self::parse(&read_text(path, MAX_FILE_BYTES)?, &file)
     }
 
-    /// Parses and checks scenario `text`; `file` names it in errors.
+    /// Parses and checks the text of a scenario. Errors name it `file`.
     ///
     /// # Errors
-    /// When the text is not JSON of this model or breaks a rule.
+    /// When the text is not a scenario or breaks a rule.
     pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
         if let Some(format) = stated_format(text).filter(|&format| format != FORMAT) {
             return Err(ScenarioError::Invalid {
@@ -100,14 +94,14 @@ impl Scenario {
         parsed.checked(file)
     }
 
-    /// This scenario with `key=value` settings applied in order.
+    /// Returns this scenario with `KEY=VALUE` settings applied in order.
     ///
-    /// A key is a dotted path as `maxq-lab check --format json` prints it, such as
-    /// `learning.discount` or `world.foraging.arena.batteries_mm.0`; a value is JSON,
-    /// or else taken as a string.
+    /// A key is a dotted path into the output of `maxq-lab check --format json`, such as
+    /// `learning.discount` or `world.foraging.arena.batteries_mm.0`. A value is JSON; text that
+    /// is not JSON is taken as a string.
     ///
     /// # Errors
-    /// When a setting is malformed, names no existing key, or breaks a rule.
+    /// When a setting is malformed, its key does not exist, or the result breaks a rule.
     pub fn with_settings(self, settings: &[String]) -> Result<Self, ScenarioError> {
         if settings.is_empty() {
             return Ok(self);
@@ -115,10 +109,10 @@ impl Scenario {
         overrides::apply(&self, settings)?.checked("--set")
     }
 
-    /// This scenario if it obeys every rule; `file` names it in errors.
+    /// Returns this scenario if it obeys every rule. Errors name it `file`.
     ///
     /// # Errors
-    /// With all rules that are broken.
+    /// When rules are broken; the error holds all of them.
     pub fn checked(self, file: &str) -> Result<Self, ScenarioError> {
         let problems = rules::problems(&self);
         if problems.is_empty() {
@@ -131,9 +125,65 @@ impl Scenario {
         }
     }
 
-    /// The JSON Schema of scenario files.
+    /// Returns the JSON Schema of scenario files.
     #[must_use]
     pub fn schema() -> schemars::Schema {
         schemars::schema_for!(Scenario)
+    }
+}
+
+/// Why a scenario cannot be used.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// Neither a file nor an embedded scenario has this name.
+    #[error(
+        "no scenario {name:?}: there is no such file, and the embedded scenarios are {}",
+        embedded::names(EMBEDDED)
+    )]
+    NotFound {
+        /// The name that was given.
+        name: String,
+    },
+    /// The file cannot be read, or is not the JSON of a scenario.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The scenario breaks rules.
+    #[error("{file}: {}", list(.problems))]
+    Invalid {
+        /// The file, or `--set`.
+        file: String,
+        /// Every broken rule; at least one.
+        problems: Vec<Problem>,
+    },
+    /// A `--set` argument is not `KEY=VALUE`, or its key or value does not exist.
+    #[error("--set {setting}: {message}")]
+    Setting {
+        /// The argument.
+        setting: String,
+        /// What was found and what is allowed.
+        message: String,
+    },
+}
+
+fn list(problems: &[Problem]) -> String {
+    match problems {
+        [only] => only.to_string(),
+        many => many
+            .iter()
+            .map(|problem| format!("\n  {problem}"))
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Scenario;
+
+    #[test]
+    fn the_example_on_the_page_is_a_scenario() {
+        let page = include_str!("README.md");
+        let (_, after) = page.split_once("```json\n").unwrap();
+        let (example, _) = after.split_once("```").unwrap();
+        Scenario::parse(example, "README.md").unwrap();
     }
 }

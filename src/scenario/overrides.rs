@@ -1,22 +1,22 @@
-//! `--set key=value`: changes to a scenario from the command line.
+//! `--set KEY=VALUE`: changes of a scenario on the command line.
 
 use serde_json::Value;
 
 use super::{Scenario, ScenarioError};
 
-/// The scenario with every setting applied; rules are not checked here.
+/// Returns the scenario with every setting applied. Rules are not checked here.
 ///
-/// Settings act on the complete scenario, defaults written out, so every key that
-/// exists can be set and every key that does not is an error.
+/// Settings act on the complete scenario with its defaults written out, so every existing key
+/// can be set and any other key is an error.
 pub(super) fn apply(scenario: &Scenario, settings: &[String]) -> Result<Scenario, ScenarioError> {
-    let mut scenario = scenario.clone();
-    for setting in settings {
-        scenario = apply_one(&scenario, setting).map_err(|message| ScenarioError::Setting {
-            setting: setting.clone(),
-            message,
-        })?;
-    }
-    Ok(scenario)
+    settings
+        .iter()
+        .try_fold(scenario.clone(), |scenario, setting| {
+            apply_one(&scenario, setting).map_err(|message| ScenarioError::Setting {
+                setting: setting.clone(),
+                message,
+            })
+        })
 }
 
 fn apply_one(scenario: &Scenario, setting: &str) -> Result<Scenario, String> {
@@ -30,6 +30,7 @@ fn apply_one(scenario: &Scenario, setting: &str) -> Result<Scenario, String> {
         .map_err(|error| format!("at {}: {}", error.path(), error.inner()))
 }
 
+/// Returns the value at the dotted path `key`.
 fn find<'a>(root: &'a mut Value, key: &str) -> Result<&'a mut Value, String> {
     let mut place = root;
     let mut path = String::from("the top level");
@@ -49,6 +50,7 @@ fn find<'a>(root: &'a mut Value, key: &str) -> Result<&'a mut Value, String> {
     Ok(place)
 }
 
+/// Describes the keys that exist directly below `place`.
 fn children(place: &Value) -> String {
     match place {
         Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),

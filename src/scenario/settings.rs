@@ -1,11 +1,11 @@
-//! Settings of learning and evolution that hold for every world.
+//! The settings of learning and of evolution, which are the same in every world.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::defaults as d;
 
-/// MAXQ-Q and action selection (Thesis 2.2.2, 3.1, Table 4.5).
+/// Settings of MAXQ-Q and of action selection (Thesis 2.2.2, 3.1, Table 4.5).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LearningSettings {
@@ -13,31 +13,32 @@ pub struct LearningSettings {
     pub learning_rate: f64,
     /// Discount factor gamma per time step.
     pub discount: f64,
-    /// Temperature of softmax selection at the start.
+    /// Initial temperature of softmax action selection.
     pub initial_temperature: f64,
-    /// Temperature that is never fallen below.
+    /// Lower limit of the temperature.
     pub temperature_limit: f64,
-    /// A composite subtask's temperature is multiplied by this when it terminates.
+    /// Factor by which a composite subtask's temperature is multiplied when the subtask
+    /// terminates.
     pub temperature_decrease: f64,
-    /// Where the largest softmax probability exceeds this (rho limit), selection is
-    /// epsilon-greedy instead.
+    /// Largest softmax probability (rho limit) up to which selection is softmax; above it,
+    /// selection is epsilon-greedy.
     pub probability_limit: f64,
-    /// Probability of a random choice in epsilon-greedy selection.
+    /// Probability of a uniformly random choice in epsilon-greedy selection.
     pub epsilon: f64,
-    /// Initial value of every parameter.
+    /// Initial value of every learned parameter (theta).
     pub initial_parameter: f64,
-    /// Which state the bootstrap value of C~ is taken from.
+    /// State in which the bootstrap value of the completion function C~ is taken.
     pub completion_bootstrap: CompletionBootstrap,
-    /// When a composite subtask's temperature falls.
+    /// Terminations on which a composite subtask's temperature falls.
     pub cool_on: CoolOn,
-    /// Which transitions carry a negative pseudo-reward.
+    /// Transitions that carry a negative pseudo-reward.
     pub pseudo_reward: PseudoReward,
-    /// The pseudo-reward is minus this. A subtask prefers failing to a way to its goal that
-    /// costs more.
+    /// Size of the negative pseudo-reward. A subtask learns to fail rather than to reach its
+    /// goal at a higher cost than this.
     pub pseudo_penalty: f64,
     /// How a composite subtask chooses among its children.
     pub composite_choice: CompositeChoice,
-    /// Whether primitive subtasks learn during evolution.
+    /// Whether primitive subtasks go on learning during evolution, and who shares them.
     pub primitive_learning: PrimitiveLearning,
 }
 
@@ -62,147 +63,132 @@ impl Default for LearningSettings {
     }
 }
 
-/// The state in which the bootstrap value V(a*, .) of C~ is taken (Thesis Eq. 3.4).
+/// The state in which the bootstrap value V(a*, .) of the completion function C~ is taken
+/// (Thesis Eq. 3.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CompletionBootstrap {
-    /// V(a*, s') in the next state, as the algorithm means it.
+    /// V(a*, s'), in the next state: the intended algorithm.
     #[default]
     NextState,
-    /// V(a*, s) in the updated state, as Equation 3.4 and Algorithm 2.4 print it.
+    /// V(a*, s), in the updated state: the formula as Equation 3.4 and Algorithm 2.4 print it.
     AsPrinted,
 }
 
-/// When the temperature of a composite subtask falls.
+/// The terminations on which the temperature of a composite subtask falls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CoolOn {
-    /// At every termination (Thesis 3.1).
+    /// Every termination (Thesis 3.1).
     #[default]
     Termination,
-    /// Only where the goal was reached (Dietterich 2000).
+    /// Only terminations in a goal state (Dietterich 2000).
     Goal,
 }
 
-/// Which transitions carry a negative pseudo-reward; transitions into a goal state carry 0.
+/// The transitions that carry a negative pseudo-reward. Transitions into a goal state carry
+/// none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PseudoReward {
-    /// Those into a terminal state that is no goal (Thesis Definition 2.1).
+    /// Transitions into a terminal state that is not a goal (Thesis Definition 2.1).
     #[default]
     Terminal,
-    /// Those into any state that is no goal (Thesis 4.2, taken literally).
+    /// Transitions into any state that is not a goal (Thesis 4.2, taken literally).
     All,
 }
 
-/// How a composite subtask chooses among the children that can act.
+/// How a composite subtask chooses among the children that are not terminated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CompositeChoice {
     /// Softmax over C~ + V (Thesis 3.1).
     #[default]
     Softmax,
-    /// All alike: the control that tells what learning between children adds.
+    /// Uniformly at random: the control that shows what learning to choose adds.
     Random,
 }
 
-/// Whether the primitive subtasks learn during evolution.
+/// Whether the primitive subtasks go on learning during evolution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PrimitiveLearning {
-    /// They stay as they were trained.
+    /// They keep the parameters they were trained to before evolution.
     #[default]
     Frozen,
-    /// All individuals teach the one copy, in turn; such a run uses one thread.
+    /// All individuals update one common copy, in turn. Such a run uses one thread.
     Shared,
-    /// Each individual has its own and teaches them itself, from nothing where they are
-    /// not trained. Offspring inherit those of the parent whose root they have.
+    /// Each individual updates a copy of its own, which starts from initial values if the
+    /// world does not train primitive subtasks. Offspring inherit the copy of the parent whose
+    /// root they have.
     Individual,
 }
 
-/// Genetic programming of hierarchies (Thesis 3.2, Algorithm 3.1, Table 4.7).
+/// Settings of the genetic programming of hierarchies (Thesis 3.2, Algorithm 3.1, Table 4.7).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EvolutionSettings {
     /// Individuals in a generation.
-    #[serde(default = "population_size")]
+    #[serde(default = "constant::<usize, { d::POPULATION_SIZE }>")]
     pub population_size: usize,
-    /// Trials of an individual in a generation; the last half is scored.
-    #[serde(default = "trials_per_generation")]
+    /// Trials of each individual in a generation. The second half of them is scored.
+    #[serde(default = "constant::<usize, { d::TRIALS_PER_GENERATION }>")]
     pub trials_per_generation: usize,
-    /// Individuals drawn for a tournament.
-    #[serde(default = "tournament_size")]
+    /// Tournament size: individuals drawn for each tournament.
+    #[serde(default = "constant::<usize, { d::TOURNAMENT_SIZE }>")]
     pub tournament_size: usize,
-    /// Best individuals that are reproduced; as many of the worst die.
-    #[serde(default = "reproduced")]
+    /// Number of best individuals that are reproduced, and of worst individuals that are
+    /// removed, in each generation.
+    #[serde(default = "constant::<usize, { d::REPRODUCED }>")]
     pub reproduced: usize,
-    /// Maximum depth of a hierarchy, the root counted.
-    #[serde(default = "maximum_depth")]
+    /// Maximum depth of a hierarchy. The root has depth 1.
+    #[serde(default = "constant::<usize, { d::MAXIMUM_DEPTH }>")]
     pub maximum_depth: usize,
-    /// Generations after which evolution ends although it has not converged.
-    #[serde(default = "generation_limit")]
+    /// Generations after which evolution ends even if it has not converged.
+    #[serde(default = "constant::<u64, { d::GENERATION_LIMIT }>")]
     pub generation_limit: u64,
-    /// Time steps after which a trial ends although nothing was delivered.
-    #[serde(default = "trial_step_limit")]
+    /// Time steps after which a trial is truncated.
+    #[serde(default = "constant::<u32, { d::TRIAL_STEP_LIMIT }>")]
     pub trial_step_limit: u32,
-    /// States sampled per state type for the selection probabilities.
-    #[serde(default = "policy_samples")]
+    /// States sampled for each state type to estimate the selection probabilities.
+    #[serde(default = "constant::<usize, { d::POLICY_SAMPLES }>")]
     pub policy_samples: usize,
-    /// What ranks the individuals.
+    /// How individuals are ranked.
     #[serde(default)]
     pub selection: Selection,
     /// What offspring inherit.
     #[serde(default)]
     pub inheritance: Inheritance,
-    /// Where new hierarchies come from.
+    /// How new hierarchies are made.
     #[serde(default)]
     pub variation: Variation,
-    /// Probability with which an offspring then loses a child of one of its composite
-    /// subtasks, and all below it; 0 in the thesis, which wishes for it (chapter 5).
+    /// Probability that an offspring loses a random child of one of its composite subtasks,
+    /// with everything below it, after crossover. The thesis has no mutation (0) but suggests
+    /// it as future work (chapter 5).
     #[serde(default)]
     pub prune_probability: f64,
-    /// Probability with which an offspring then gets one more child in one of its composite
-    /// subtasks; 0 in the thesis, which wishes for it (chapter 5).
+    /// Probability that one of an offspring's composite subtasks gains a random child after
+    /// crossover. The thesis has no mutation (0) but suggests it as future work (chapter 5).
     #[serde(default)]
     pub grow_probability: f64,
-    /// The hand-coded first generation, one hierarchy an individual, as text:
+    /// The first generation: one hierarchy for each individual, such as
     /// `(Root Wander ApproachBattery ApproachNest)`.
     pub initial_population: Vec<String>,
 }
 
-fn population_size() -> usize {
-    d::POPULATION_SIZE
-}
-fn trials_per_generation() -> usize {
-    d::TRIALS_PER_GENERATION
-}
-fn tournament_size() -> usize {
-    d::TOURNAMENT_SIZE
-}
-fn reproduced() -> usize {
-    d::REPRODUCED
-}
-fn maximum_depth() -> usize {
-    d::MAXIMUM_DEPTH
-}
-fn generation_limit() -> u64 {
-    d::GENERATION_LIMIT
-}
-fn trial_step_limit() -> u32 {
-    d::TRIAL_STEP_LIMIT
-}
-fn policy_samples() -> usize {
-    d::POLICY_SAMPLES
+/// Returns `VALUE`, as the default of a field of any number type.
+fn constant<T: From<u16>, const VALUE: u16>() -> T {
+    T::from(VALUE)
 }
 
-/// What ranks the individuals of a generation.
+/// How the individuals of a generation are ranked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Selection {
-    /// Time steps over the scored trials, fewer first.
+    /// By the time steps of their scored trials, fewest first.
     #[default]
     Fitness,
-    /// Chance: the control that tells selection from drift.
+    /// At random: the control that tells selection from drift.
     Random,
 }
 
@@ -210,27 +196,26 @@ pub enum Selection {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Inheritance {
-    /// Learned parameters and temperatures, except along the path from the
+    /// Learned parameters and temperatures, except those of the subtasks on the path from the
     /// crossover site to the root (Thesis 3.2).
     #[default]
     Lamarckian,
-    /// Nothing: offspring start from initial values.
+    /// Nothing: all parameters and temperatures start from their initial values.
     Darwinian,
 }
 
-/// Where the hierarchies of the next generation come from.
+/// How the hierarchies of the next generation are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Variation {
-    /// Crossover of the survivors, besides the reproduced best (Thesis 3.2).
+    /// By crossover of the survivors; the best are reproduced (Thesis 3.2).
     #[default]
     Crossover,
-    /// Chance, besides the reproduced best: fresh random hierarchies that obey the rules.
-    /// The initial population is drawn like them and its hierarchies are not used. Only
-    /// the generation limit ends such a run: random search, with as many trials in a
-    /// generation as evolution.
+    /// At random: random search with as many trials in a generation as evolution. The best
+    /// are reproduced and every other hierarchy is drawn anew. The first generation is drawn
+    /// too, and `initial_population` is not used. Only the generation limit ends the run.
     RandomTrees,
-    /// Nowhere: all individuals live on and learn, generation after generation, until the
+    /// Not at all: every individual keeps its hierarchy and goes on learning until the
     /// generation limit.
     None,
 }
