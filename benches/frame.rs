@@ -10,8 +10,8 @@ use maxq_lab::dashboard::keys::KeyMap;
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
 use maxq_lab::dashboard::{App, Input, Mode, OffscreenDashboard, ViewContext, ViewId};
 use maxq_lab::hierarchy::Glyphs;
-use maxq_lab::lab::specimen::{Archive, bench};
-use maxq_lab::lab::{Recording, RunOptions, start};
+use maxq_lab::lab::inspection::Archive;
+use maxq_lab::lab::{Recording, RunOptions, lasting_experiment, start};
 use maxq_lab::scenario::Scenario;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -28,12 +28,18 @@ fn frames(criterion: &mut Criterion) {
         .unwrap()
         .join()
         .unwrap();
-    let bench = bench(scenario, 1).unwrap();
+    let experiment = lasting_experiment(scenario, 1).unwrap();
     let look = Look::new(Theme::all(), "dark", Signs::of(Glyphs::Unicode));
     let folder_name = String::from("run");
-    let context = ViewContext::new(bench, folder_name, Mode::Replay, look, KeyMap::default());
+    let context = ViewContext::new(
+        experiment,
+        folder_name,
+        Mode::Replay,
+        look,
+        KeyMap::default(),
+    );
     let app = App::new(context);
-    let mut dashboard = OffscreenDashboard::new(app, Archive::new(bench, &folder, None));
+    let mut dashboard = OffscreenDashboard::new(app, Archive::new(experiment, &folder, None));
     dashboard.update(Input::Resize(200, 60));
     for event in Recording::read(&folder).unwrap().events {
         dashboard.update(Input::Event(Box::new(event)));

@@ -8,11 +8,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use maxq_lab::evolution::{Evolution, Experiment, Workers};
-use maxq_lab::lab::{Keep, RunOptions, WorldTask, start, with_world};
+use maxq_lab::evolution::Workers;
+use maxq_lab::lab::{Keep, RunOptions, experiment, start};
 use maxq_lab::learning::Gate;
 use maxq_lab::scenario::Scenario;
-use maxq_lab::worlds::World;
 
 const TURNS: usize = 7;
 const SEED: u64 = 1;
@@ -129,7 +128,8 @@ fn recorded(scenario: &Scenario, threads: usize, keep: Keep) -> Result<(), Error
 
 /// The same computation without events, recorder or files.
 fn unrecorded(scenario: &Scenario) -> Result<u64, Error> {
-    with_world(scenario.clone(), Unrecorded)?
+    let state = experiment(scenario.clone(), SEED)?.evolve(&Workers::new(1)?, &Gate::default())?;
+    Ok(state.control_steps)
 }
 
 /// Two runs that have nothing to do with each other: what a second processor brings at best,
@@ -143,21 +143,6 @@ fn two_at_once(scenario: &Scenario) -> Result<(), Error> {
         }
         Ok(())
     })
-}
-
-struct Unrecorded;
-
-impl WorldTask for Unrecorded {
-    type Output = Result<u64, Error>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let (workers, gate) = (Workers::new(1)?, Gate::default());
-        let mut evolution = Evolution::begin(&experiment, &workers, SEED, &gate)?;
-        while !evolution.is_over() {
-            evolution.step(&gate, |_| {})?;
-        }
-        Ok(evolution.state().control_steps)
-    }
 }
 
 /// The largest resident set of the real program, from Linux's account of the process.

@@ -10,11 +10,11 @@
 
 use allocation_counter::measure;
 use maxq_lab::evolution::{Experiment, Workers};
-use maxq_lab::lab::{WorldTask, with_world};
 use maxq_lab::learning::{Gate, PolicySamples};
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::scenario::Scenario;
-use maxq_lab::worlds::World;
+use maxq_lab::worlds::WorldFn;
+use maxq_lab::worlds::scene::Scenic;
 
 /// Trials in which room may grow: until one has been as long as trials can be.
 const FIRST_TRIALS: usize = 60;
@@ -23,12 +23,13 @@ const STEP_LIMIT: u32 = 400;
 
 /// Trials of the first hierarchy of the initial population, and of the last: allocations of
 /// each in the later trials, and the steps that these took.
-struct Trials;
+struct Trials(Scenario);
 
-impl WorldTask for Trials {
+impl WorldFn for Trials {
     type Output = Vec<(u64, u32)>;
 
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+    fn call<W: Scenic + 'static>(self, world: W) -> Self::Output {
+        let experiment = Experiment::new(self.0, world).unwrap();
         let (workers, gate) = (Workers::new(1).unwrap(), Gate::default());
         let primitives = experiment.train(1, 0, &workers, &gate).unwrap();
         let trees = &experiment.initial_population;
@@ -65,7 +66,7 @@ fn a_control_step_asks_for_no_memory() {
         "cliff",
     ] {
         let scenario = Scenario::load(name).unwrap();
-        for (allocations, steps) in with_world(scenario, Trials).unwrap() {
+        for (allocations, steps) in scenario.world.clone().build(Trials(scenario)).unwrap() {
             assert!(steps > 100, "{name}: {steps} steps say nothing");
             assert_eq!(allocations, 0, "{name}, in {steps} steps");
         }
@@ -73,19 +74,20 @@ fn a_control_step_asks_for_no_memory() {
 }
 
 /// Allocations that the selection probabilities in so many states of each type take.
-struct Probabilities(usize);
+struct Probabilities(Scenario, usize);
 
-impl WorldTask for Probabilities {
+impl WorldFn for Probabilities {
     type Output = u64;
 
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> u64 {
+    fn call<W: Scenic + 'static>(self, world: W) -> u64 {
+        let experiment = Experiment::new(self.0, world).unwrap();
         let (workers, gate) = (Workers::new(1).unwrap(), Gate::default());
         let primitives = experiment.train(1, 0, &workers, &gate).unwrap();
         let tree = experiment.initial_population.last().unwrap().clone();
         let hierarchy = experiment.untrained(tree);
         let mut rng = stream(1, 0, 0, Purpose::PolicySamples);
         let (world, encoder) = (&experiment.world, &experiment.encoder);
-        let samples = PolicySamples::draw(world, self.0, &mut rng, &gate).unwrap();
+        let samples = PolicySamples::draw(world, self.1, &mut rng, &gate).unwrap();
         let model = &experiment.scenario.learning;
         let counted = measure(|| {
             samples
@@ -100,7 +102,8 @@ impl WorldTask for Probabilities {
 fn selection_probabilities_ask_for_no_memory_a_state() {
     let count = |states| {
         let scenario = Scenario::load("environment-3").unwrap();
-        with_world(scenario, Probabilities(states)).unwrap()
+        let world = scenario.world.clone();
+        world.build(Probabilities(scenario, states)).unwrap()
     };
     let (few, many) = (count(10), count(200));
     assert!(few > 0, "nothing was counted");

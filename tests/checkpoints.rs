@@ -12,10 +12,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use common::{Record, assert_same_bytes, run_in, short, smoke, threads};
-use maxq_lab::evolution::Experiment;
-use maxq_lab::lab::{Checkpoint, WorldTask, resume, with_world};
+use maxq_lab::lab::{Checkpoint, experiment, resume};
 use maxq_lab::scenario::Scenario;
-use maxq_lab::worlds::World;
 use proptest::prelude::*;
 
 /// Loads a checkpoint, rebuilds its state, and saves both again.
@@ -23,21 +21,12 @@ fn assert_round_trip(bytes: &[u8], what: &str) {
     let text = std::str::from_utf8(bytes).unwrap();
     let loaded = Checkpoint::from_text(text).unwrap();
     assert_same_bytes(&loaded.to_bytes().unwrap(), bytes, what);
-    let rebuilt = with_world(loaded.scenario.clone(), Rebuilt(&loaded)).unwrap();
+    let experiment = experiment(loaded.scenario.clone(), loaded.seed).unwrap();
+    let state = experiment.population(&loaded).unwrap();
+    let (scenario, catalogue) = (experiment.scenario(), experiment.catalogue());
+    let again = Checkpoint::of(scenario, catalogue, loaded.seed, &state, loaded.events).unwrap();
+    let rebuilt = again.to_bytes().unwrap();
     assert_same_bytes(&rebuilt, bytes, &format!("{what}, by its state"));
-}
-
-/// The bytes of a checkpoint of a checkpoint's state.
-struct Rebuilt<'c>(&'c Checkpoint);
-
-impl WorldTask for Rebuilt<'_> {
-    type Output = Vec<u8>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Vec<u8> {
-        let state = self.0.state(&experiment).unwrap();
-        let again = Checkpoint::of(&experiment, self.0.seed, &state, self.0.events);
-        again.unwrap().to_bytes().unwrap()
-    }
 }
 
 /// The kept checkpoints of a run, in order.

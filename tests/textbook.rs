@@ -82,9 +82,8 @@ fn learned<W: World>(
         every: 5000,
         tolerance: 1e-6,
         repeats,
-        seed: 1,
     };
     let workers = Workers::new(1).unwrap();
     let gate = Gate::default();
-    learn(experiment, algorithm, &protocol, &workers, &gate, |_| {}).unwrap()
+    learn(experiment, 1, algorithm, &protocol, &workers, &gate, |_| {}).unwrap()
 }

@@ -6,7 +6,8 @@ use clap::{Args, ValueEnum};
 
 use super::dashboard::DashboardArgs;
 use super::output::{Failure, Format};
-use crate::lab::specimen::{Bench, Start};
+use crate::lab::AnyExperiment;
+use crate::lab::inspection::Start;
 use crate::lab::{Keep, RunOptions};
 use crate::scenario::{EMBEDDED, Scenario};
 
@@ -117,9 +118,12 @@ pub(super) struct StartArg {
 }
 
 impl StartArg {
-    /// The state in the world of a bench, if the person has named one.
-    pub(super) fn read(&self, bench: &dyn Bench) -> Result<Option<Start>, Failure> {
-        let start = self.start.as_deref().map(|text| Start::read(text, bench));
+    /// The state in the world of the experiment, if the person has named one.
+    pub(super) fn read(&self, experiment: &dyn AnyExperiment) -> Result<Option<Start>, Failure> {
+        let start = self
+            .start
+            .as_deref()
+            .map(|text| experiment.read_start(text));
         let start = start.transpose();
         start.map_err(|error| format!("--start: {error}").into())
     }

@@ -5,11 +5,9 @@ use std::process::ExitCode;
 use serde::Serialize;
 
 use super::output::{self, CommandResult, Format};
-use crate::evolution::Experiment;
-use crate::lab::{WorldTask, with_world};
+use crate::lab::experiment;
 use crate::report::Plan;
 use crate::scenario::Scenario;
-use crate::worlds::World;
 
 /// Check scenario files, and plans of studies.
 ///
@@ -77,9 +75,9 @@ fn report_scenario(file: &str, settings: &[String]) -> Report {
         .and_then(|scenario| scenario.with_settings(settings))
         .map_err(|error| error.to_string());
     let checked = loaded.and_then(|scenario| {
-        let ready = with_world(scenario.clone(), Ready);
+        let ready = experiment(scenario.clone(), 0);
         ready
-            .map(|()| scenario)
+            .map(|_| scenario)
             .map_err(|error| format!("{file}: {error}"))
     });
     let (scenario, error) = match checked {
@@ -114,12 +112,4 @@ fn report_plan(file: &str, settings: &[String]) -> Report {
         scenario: None,
         plan,
     }
-}
-
-struct Ready;
-
-impl WorldTask for Ready {
-    type Output = ();
-
-    fn carry_out<W: World + 'static>(self, _experiment: Experiment<W>) {}
 }

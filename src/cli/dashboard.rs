@@ -15,7 +15,8 @@ use crate::dashboard::session::{Exit, Session, Source};
 use crate::dashboard::terminal::{Terminal, is_terminal};
 use crate::dashboard::{App, Config, Mode, RunsTable, ViewContext};
 use crate::hierarchy::Glyphs;
-use crate::lab::specimen::{Archive, Bench, Start};
+use crate::lab::AnyExperiment;
+use crate::lab::inspection::{Archive, Start};
 
 /// How the dashboard looks.
 #[derive(Clone, Debug, clap::Args)]
@@ -109,13 +110,13 @@ impl DashboardSettings {
     /// Shows a dashboard over a run until somebody or something ends it.
     pub(super) fn show(
         self,
-        what: &'static dyn Bench,
+        experiment: &'static dyn AnyExperiment,
         folder: &Path,
         source: Source<'_>,
         signals: &SignalWatcher,
     ) -> Result<Exit, Failure> {
         let mut terminal = self.terminal()?;
-        let session = self.session(what, folder, source, &mut terminal)?;
+        let session = self.session(experiment, folder, source, &mut terminal)?;
         Ok(session.run(&signals.heard)?)
     }
 
@@ -128,7 +129,7 @@ impl DashboardSettings {
     /// A dashboard over a run on a terminal.
     pub(super) fn session<'s>(
         &self,
-        what: &'static dyn Bench,
+        experiment: &'static dyn AnyExperiment,
         folder: &'s Path,
         source: Source<'s>,
         terminal: &'s mut Terminal,
@@ -140,8 +141,9 @@ impl DashboardSettings {
         };
         let name = folder.display().to_string();
         let (look, keys) = (self.look.clone(), self.keys.clone());
-        let app = App::new(ViewContext::new(what, name, mode, look, keys)).starting_at(self.start);
-        let archive = Archive::new(what, folder, controls);
+        let app =
+            App::new(ViewContext::new(experiment, name, mode, look, keys)).starting_at(self.start);
+        let archive = Archive::new(experiment, folder, controls);
         let session = Session::new(app, archive, source, folder, terminal, self.fps)?;
         Ok(session)
     }

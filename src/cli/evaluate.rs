@@ -4,14 +4,11 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::answer::{Asked, Question, answer};
+use super::answer::{AnswerArgs, Means};
 use super::args::ScenarioArgs;
 use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
-use crate::evolution::{Experiment, read_tree};
-use crate::lab::{Protocol, Scored, departures, evaluate, in_words, with_changes};
-use crate::learning::Gate;
-use crate::worlds::scene::Scenic;
+use crate::lab::{Protocol, Scored, departures, in_words, with_changes};
 
 /// Tell how good a hierarchy's structure is.
 ///
@@ -47,7 +44,7 @@ pub(super) struct Args {
     banks: u64,
 
     #[command(flatten)]
-    asked: Asked,
+    answer: AnswerArgs,
 }
 
 /// How good a structure is, and how that was found.
@@ -67,20 +64,20 @@ pub(super) struct Report {
 
 /// Carries out the command.
 pub(super) fn main(args: Args) -> CommandResult {
-    let (scenario, format) = (args.scenario.load()?, args.asked.format);
-    answer(&args, scenario, format)
+    let scenario = args.scenario.load()?;
+    args.answer
+        .answer(scenario, |means| args.compute(&means), describe)
 }
 
-impl Question for Args {
-    type Answer = Report;
-
-    fn compute<W: Scenic + 'static>(
-        &self,
-        experiment: &Experiment<W>,
-        gate: &Gate,
-    ) -> Result<Report, Failure> {
-        let depth = experiment.scenario.evolution.maximum_depth;
-        let tree = read_tree(&self.tree, experiment.catalogue(), depth)
+impl Args {
+    fn compute(&self, means: &Means<'_>) -> Result<Report, Failure> {
+        let Means {
+            experiment,
+            workers,
+            gate,
+        } = *means;
+        let tree = experiment
+            .read_tree(&self.tree)
             .map_err(|error| format!("--tree: {error}"))?;
         let count = |number: u64| usize::try_from(number).unwrap_or(usize::MAX);
         let protocol = Protocol {
@@ -89,20 +86,18 @@ impl Question for Args {
             repeats: count(self.repeats),
             // A set that no repeat uses would be trained for nothing.
             banks: count(self.banks.min(self.repeats)),
-            seed: self.asked.seed,
         };
-        let workers = self.asked.workers()?;
         let started = Instant::now();
         let bar = repeats(self.repeats);
         let show = |done| bar.set_position(done as u64);
-        let scored = evaluate(experiment, &tree, &protocol, &workers, gate, show)?;
+        let scored = experiment.evaluate(&tree, &protocol, workers, gate, &show)?;
         bar.finish_and_clear();
         let computed = gate.control_steps() as f64;
-        let scenario = &experiment.scenario;
+        let scenario = experiment.scenario();
         Ok(Report {
             scenario: scenario.name.clone(),
             changed: in_words(&departures(scenario)),
-            seed: protocol.seed,
+            seed: self.answer.seed,
             warmup: protocol.warmup,
             trials: protocol.trials,
             banks: protocol.banks,
@@ -110,38 +105,38 @@ impl Question for Args {
             scored,
         })
     }
+}
 
-    fn describe(report: &Report) -> String {
-        let scored = &report.scored;
-        let evaluation = &scored.evaluation;
-        let error = |error: Option<f64>, digits: usize| match error {
-            Some(error) => format!(" +- {error:.digits$} (standard error)"),
-            None => String::new(),
-        };
-        let unknown = match evaluation.standard_error {
-            Some(_) => "",
-            None => "; a single repeat has no standard error",
-        };
-        format!(
-            "{}\n{}, seed {}: {} of {}, {} before them, {} of primitive subtasks{unknown}\n\
-             {:.1}{} time steps a trial\n\
-             {:.2}{} return of a trial, the sum of its rewards\n\
-             {:.2} % of the trials delivered\n\
-             {} control steps, {:.0} a second with the training of the primitive subtasks\n",
-            evaluation.tree,
-            with_changes(&report.scenario, report.changed.as_deref()),
-            report.seed,
-            counted(evaluation.repeats.len() as u64, "repeat"),
-            counted(report.trials as u64, "scored trial"),
-            report.warmup,
-            counted(report.banks as u64, "set"),
-            evaluation.mean,
-            error(evaluation.standard_error, 1),
-            scored.mean_return,
-            error(scored.return_standard_error, 2),
-            100.0 * evaluation.delivered_share,
-            evaluation.control_steps,
-            report.control_steps_per_second,
-        )
-    }
+fn describe(report: &Report) -> String {
+    let scored = &report.scored;
+    let evaluation = &scored.evaluation;
+    let error = |error: Option<f64>, digits: usize| match error {
+        Some(error) => format!(" +- {error:.digits$} (standard error)"),
+        None => String::new(),
+    };
+    let unknown = match evaluation.standard_error {
+        Some(_) => "",
+        None => "; a single repeat has no standard error",
+    };
+    format!(
+        "{}\n{}, seed {}: {} of {}, {} before them, {} of primitive subtasks{unknown}\n\
+         {:.1}{} time steps a trial\n\
+         {:.2}{} return of a trial, the sum of its rewards\n\
+         {:.2} % of the trials delivered\n\
+         {} control steps, {:.0} a second with the training of the primitive subtasks\n",
+        evaluation.tree,
+        with_changes(&report.scenario, report.changed.as_deref()),
+        report.seed,
+        counted(evaluation.repeats.len() as u64, "repeat"),
+        counted(report.trials as u64, "scored trial"),
+        report.warmup,
+        counted(report.banks as u64, "set"),
+        evaluation.mean,
+        error(evaluation.standard_error, 1),
+        scored.mean_return,
+        error(scored.return_standard_error, 2),
+        100.0 * evaluation.delivered_share,
+        evaluation.control_steps,
+        report.control_steps_per_second,
+    )
 }

@@ -12,8 +12,8 @@ use crate::dashboard::keys::Key;
 use crate::dashboard::{
     App, FrameFormat, Input, Mode, OffscreenDashboard, ViewContext, ViewId, render,
 };
-use crate::lab::Recording;
-use crate::lab::specimen::{Archive, bench};
+use crate::lab::inspection::Archive;
+use crate::lab::{Recording, lasting_experiment};
 
 /// Print one frame of the dashboard over a recorded run.
 ///
@@ -110,12 +110,18 @@ pub(super) fn main(args: &Args) -> CommandResult {
         return Err(format!("--generation: found {found}; allowed: 1 to {lived}").into());
     }
     let manifest = recording.manifest;
-    let bench = bench(manifest.scenario, manifest.seed)?;
+    let experiment = lasting_experiment(manifest.scenario, manifest.seed)?;
     let folder = args.run_dir.display().to_string();
-    let start = args.start.read(bench)?;
-    let app =
-        App::new(ViewContext::new(bench, folder, Mode::Replay, look, key_map)).starting_at(start);
-    let mut dashboard = OffscreenDashboard::new(app, Archive::new(bench, &args.run_dir, None));
+    let start = args.start.read(experiment)?;
+    let app = App::new(ViewContext::new(
+        experiment,
+        folder,
+        Mode::Replay,
+        look,
+        key_map,
+    ))
+    .starting_at(start);
+    let mut dashboard = OffscreenDashboard::new(app, Archive::new(experiment, &args.run_dir, None));
     let Size(columns, rows) = args.size;
     dashboard.update(Input::Resize(columns, rows));
     for event in recording.events {

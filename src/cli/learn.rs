@@ -5,17 +5,14 @@ use std::fmt::Write;
 use clap::ValueEnum;
 use serde::Serialize;
 
-use super::answer::{Asked, Question, answer};
+use super::answer::{AnswerArgs, Means};
 use super::args::ScenarioArgs;
 use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
-use crate::evolution::{Experiment, read_tree};
 use crate::lab::{
-    Algorithm, Course, GivenPolicy, LearnError, LearnProtocol, Learned, Mean, ValueGrid,
-    departures, in_words, learn, value_grids, with_changes,
+    Algorithm, AnyExperiment, Course, GivenPolicy, LearnError, LearnProtocol, Learned, Mean,
+    ValueGrid, departures, in_words, with_changes,
 };
-use crate::learning::Gate;
-use crate::worlds::scene::Scenic;
 
 /// Let one learner learn a finite world, and compare it with the exact values.
 ///
@@ -73,7 +70,7 @@ pub(super) struct Args {
     show: Option<String>,
 
     #[command(flatten)]
-    asked: Asked,
+    answer: AnswerArgs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -124,7 +121,7 @@ pub(super) struct Report {
 
 /// Carries out the command.
 pub(super) fn main(args: Args) -> CommandResult {
-    let (scenario, format) = (args.scenario.load()?, args.asked.format);
+    let scenario = args.scenario.load()?;
     for (option, is_there, algorithm) in [
         ("--tree", args.tree.is_some(), Name::MaxqQ),
         ("--policy", args.policy.is_some(), Name::Td0),
@@ -138,20 +135,20 @@ pub(super) fn main(args: Args) -> CommandResult {
         let found = args.tolerance;
         return Err(format!("--tolerance: found {found}; allowed: 0 to 1000").into());
     }
-    answer(&args, scenario, format)
+    args.answer
+        .answer(scenario, |means| args.compute(&means), describe)
 }
 
-impl Question for Args {
-    type Answer = Report;
-
-    fn compute<W: Scenic + 'static>(
-        &self,
-        experiment: &Experiment<W>,
-        gate: &Gate,
-    ) -> Result<Report, Failure> {
-        let name = &experiment.scenario.name;
+impl Args {
+    fn compute(&self, means: &Means<'_>) -> Result<Report, Failure> {
+        let Means {
+            experiment,
+            workers,
+            gate,
+        } = *means;
+        let name = &experiment.scenario().name;
         let in_world = |error: LearnError| format!("{name}: {error}");
-        if experiment.world.mdp().is_none() {
+        if !experiment.is_finite() {
             // Before a hierarchy is asked for that would not help.
             return Err(in_world(LearnError::NotFinite).into());
         }
@@ -161,88 +158,87 @@ impl Question for Args {
             every: self.check_every,
             tolerance: self.tolerance,
             repeats: usize::try_from(self.repeats).unwrap_or(usize::MAX),
-            seed: self.asked.seed,
         };
-        let shown = shown(self.show.as_deref(), &experiment.world.variants())?;
-        let workers = self.asked.workers()?;
+        let shown = shown(self.show.as_deref(), experiment.variants())?;
         let bar = repeats(self.repeats);
         let show = |done| bar.set_position(done as u64);
-        let learned =
-            learn(experiment, &algorithm, &protocol, &workers, gate, show).map_err(in_world)?;
+        let learned = experiment
+            .learn(&algorithm, &protocol, workers, gate, &show)
+            .map_err(in_world)?;
         bar.finish_and_clear();
         Ok(Report {
             scenario: name.clone(),
             algorithm: self.algorithm.word(),
-            changed: in_words(&departures(&experiment.scenario)),
-            seed: self.asked.seed,
+            changed: in_words(&departures(experiment.scenario())),
+            seed: self.answer.seed,
             steps: self.steps,
             tolerance: self.tolerance,
-            values: value_grids(&experiment.world, &learned),
+            values: experiment.value_grids(&learned),
             learned,
             shown,
         })
     }
-
-    fn describe(report: &Report) -> String {
-        let learned = &report.learned;
-        let trials: u64 = learned.repeats.iter().map(|course| course.trials).sum();
-        let mut text = format!(
-            "{}, {}, seed {}: {} of {}, {}\n\
-             expected return of the optimal policy   {:.4}\n",
-            with_changes(&report.scenario, report.changed.as_deref()),
-            report.algorithm,
-            report.seed,
-            counted(learned.repeats.len() as u64, "repeat"),
-            counted(report.steps, "primitive step"),
-            counted(trials, "trial"),
-            learned.optimal_return
-        );
-        // Where the policy is given there is none that becomes optimal. Writing to a string
-        // cannot fail.
-        if !learned.policy_is_given {
-            let ends = |course: &Course| {
-                let last = course.checks.last();
-                last.is_some_and(|check| check.greedy_return.is_some())
-            };
-            let at_the_end = learned.final_greedy_return.map_or_else(
-                || format!("comes to an end {}", only(learned, ends)),
-                |mean| interval(mean, 4),
-            );
-            let _ = write!(
-                text,
-                "of the greedy policy at the end         {}\n\
-                 primitive steps until it is optimal     {}\n\
-                 until it is and stays so                {}\n",
-                at_the_end,
-                reached(learned, learned.steps_until_optimal, |course| course
-                    .steps_until_optimal),
-                reached(learned, learned.steps_until_always_optimal, |course| {
-                    course.steps_until_always_optimal
-                }),
-            );
-        }
-        let last = learned
-            .repeats
-            .first()
-            .and_then(|course| course.checks.last());
-        if let Some(check) = last {
-            let _ = writeln!(
-                text,
-                "largest error of a value, repeat 1      {:.4}",
-                check.largest_error
-            );
-        }
-        if let Some(grid) = report.values.get(report.shown) {
-            let _ = write!(text, "\nV {}, learned by repeat 1:\n", grid.case);
-            text.push_str(&table(&grid.learned));
-            let _ = write!(text, "\nexact:\n");
-            text.push_str(&table(&grid.exact));
-        }
-        text
-    }
 }
 
-fn algorithm<W: Scenic>(args: &Args, experiment: &Experiment<W>) -> Result<Algorithm, Failure> {
+fn describe(report: &Report) -> String {
+    let learned = &report.learned;
+    let trials: u64 = learned.repeats.iter().map(|course| course.trials).sum();
+    let mut text = format!(
+        "{}, {}, seed {}: {} of {}, {}\n\
+         expected return of the optimal policy   {:.4}\n",
+        with_changes(&report.scenario, report.changed.as_deref()),
+        report.algorithm,
+        report.seed,
+        counted(learned.repeats.len() as u64, "repeat"),
+        counted(report.steps, "primitive step"),
+        counted(trials, "trial"),
+        learned.optimal_return
+    );
+    // Where the policy is given there is none that becomes optimal. Writing to a string
+    // cannot fail.
+    if !learned.policy_is_given {
+        let ends = |course: &Course| {
+            let last = course.checks.last();
+            last.is_some_and(|check| check.greedy_return.is_some())
+        };
+        let at_the_end = learned.final_greedy_return.map_or_else(
+            || format!("comes to an end {}", only(learned, ends)),
+            |mean| interval(mean, 4),
+        );
+        let _ = write!(
+            text,
+            "of the greedy policy at the end         {}\n\
+             primitive steps until it is optimal     {}\n\
+             until it is and stays so                {}\n",
+            at_the_end,
+            reached(learned, learned.steps_until_optimal, |course| course
+                .steps_until_optimal),
+            reached(learned, learned.steps_until_always_optimal, |course| {
+                course.steps_until_always_optimal
+            }),
+        );
+    }
+    let last = learned
+        .repeats
+        .first()
+        .and_then(|course| course.checks.last());
+    if let Some(check) = last {
+        let _ = writeln!(
+            text,
+            "largest error of a value, repeat 1      {:.4}",
+            check.largest_error
+        );
+    }
+    if let Some(grid) = report.values.get(report.shown) {
+        let _ = write!(text, "\nV {}, learned by repeat 1:\n", grid.case);
+        text.push_str(&table(&grid.learned));
+        let _ = write!(text, "\nexact:\n");
+        text.push_str(&table(&grid.exact));
+    }
+    text
+}
+
+fn algorithm(args: &Args, experiment: &dyn AnyExperiment) -> Result<Algorithm, Failure> {
     Ok(match args.algorithm {
         Name::Td0 => Algorithm::Td0(match args.policy {
             Some(PolicyName::Random) => GivenPolicy::Random,
@@ -251,11 +247,10 @@ fn algorithm<W: Scenic>(args: &Args, experiment: &Experiment<W>) -> Result<Algor
         Name::QLearning => Algorithm::QLearning,
         Name::QLearningRbf => Algorithm::QLearningRbf,
         Name::MaxqQ => {
-            let depth = experiment.scenario.evolution.maximum_depth;
-            let read = |text| read_tree(text, experiment.catalogue(), depth);
-            let text = args.tree.as_deref().or(experiment.world.hand_made());
+            let text = args.tree.as_deref().or(experiment.hand_made());
             let text = text.ok_or("--tree: found none; allowed: a hierarchy")?;
-            Algorithm::MaxqQ(read(text).map_err(|error| format!("--tree: {error}"))?)
+            let tree = experiment.read_tree(text);
+            Algorithm::MaxqQ(tree.map_err(|error| format!("--tree: {error}"))?)
         }
     })
 }

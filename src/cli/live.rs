@@ -16,8 +16,7 @@ use super::signals::{SignalWatcher, Termination};
 use crate::dashboard::session::{Exit, Source};
 use crate::dashboard::terminal;
 use crate::hierarchy::{Glyphs, draw};
-use crate::lab::specimen::bench;
-use crate::lab::{Outcome, Run, departures, in_words};
+use crate::lab::{Outcome, Run, departures, in_words, lasting_experiment};
 use crate::scenario::{Scenario, Selection};
 
 /// Longest wait for a terminal to take the last words.
@@ -88,9 +87,9 @@ pub(super) fn follow(
 }
 
 fn show(run: &Run, dashboard: DashboardSettings, signals: &SignalWatcher) -> Result<Exit, Failure> {
-    let what = bench(run.scenario.clone(), run.seed)?;
+    let experiment = lasting_experiment(run.scenario.clone(), run.seed)?;
     let source = Source::live(&run.events, &run.controls);
-    dashboard.show(what, &run.folder, source, signals)
+    dashboard.show(experiment, &run.folder, source, signals)
 }
 
 /// Whether work goes on without its dashboard that was left like this, or was not there;

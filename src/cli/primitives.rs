@@ -5,13 +5,10 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::answer::{Asked, Question, answer};
+use super::answer::{AnswerArgs, Means};
 use super::args::ScenarioArgs;
 use super::output::{CommandResult, Failure};
-use crate::evolution::Experiment;
-use crate::learning::Gate;
 use crate::worlds::Kind;
-use crate::worlds::scene::Scenic;
 
 /// Train the primitive subtasks and show what they have learned.
 ///
@@ -28,7 +25,7 @@ pub(super) struct Args {
     scenario: ScenarioArgs,
 
     #[command(flatten)]
-    asked: Asked,
+    answer: AnswerArgs,
 }
 
 /// What the primitive subtasks have learned.
@@ -59,21 +56,20 @@ struct Row {
 
 /// Carries out the command.
 pub(super) fn main(args: Args) -> CommandResult {
-    let (scenario, format) = (args.scenario.load()?, args.asked.format);
-    answer(&args, scenario, format)
+    let scenario = args.scenario.load()?;
+    args.answer
+        .answer(scenario, |means| args.compute(&means), describe)
 }
 
-impl Question for Args {
-    type Answer = Report;
-
-    fn compute<W: Scenic + 'static>(
-        &self,
-        experiment: &Experiment<W>,
-        gate: &Gate,
-    ) -> Result<Report, Failure> {
-        let mut primitives = experiment.catalogue().primitives();
-        if primitives.all(|primitive| experiment.world.training(primitive).is_none()) {
-            let name = &experiment.scenario.name;
+impl Args {
+    fn compute(&self, means: &Means<'_>) -> Result<Report, Failure> {
+        let Means {
+            experiment,
+            workers,
+            gate,
+        } = *means;
+        if !experiment.scenario().world.trains_primitives() {
+            let name = &experiment.scenario().name;
             return Err(format!(
                 "{name}: found primitive subtasks that are not trained, but learn with each \
                  individual; allowed: a world whose primitive subtasks are trained, such as \
@@ -81,23 +77,19 @@ impl Question for Args {
             )
             .into());
         }
-        let workers = self.asked.workers()?;
-        let primitives = experiment.train(self.asked.seed, 0, &workers, gate)?;
+        let primitives = experiment.train(0, workers, gate)?;
         let catalogue = experiment.catalogue();
         let primitives = primitives.all().iter().map(|primitive| {
-            let rows = experiment
-                .world
-                .probes(primitive.subtask)
-                .into_iter()
-                .map(|probe| {
-                    let q = primitive.action_values(&experiment.encoder, probe.percept.as_ref());
-                    Row {
-                        label: probe.label,
-                        input: probe.readings.into_iter().collect(),
-                        greedy_action: greedy(&q) + 1,
-                        q,
-                    }
-                });
+            let probes = experiment.probes(primitive.subtask).into_iter();
+            let rows = probes.map(|probe| {
+                let q = primitive.action_values(experiment.encoder(), &probe.percept);
+                Row {
+                    label: probe.label,
+                    input: probe.readings.into_iter().collect(),
+                    greedy_action: greedy(&q) + 1,
+                    q,
+                }
+            });
             let subtask = catalogue.subtask(primitive.subtask);
             Primitive {
                 subtask: subtask.name.clone(),
@@ -109,47 +101,46 @@ impl Question for Args {
             }
         });
         Ok(Report {
-            scenario: experiment.scenario.name.clone(),
-            seed: self.asked.seed,
+            scenario: experiment.scenario().name.clone(),
+            seed: self.answer.seed,
             primitives: primitives.collect(),
         })
     }
+}
 
-    fn describe(report: &Report) -> String {
-        let mut text = format!("{}, seed {}\n", report.scenario, report.seed);
-        for primitive in &report.primitives {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "\n{}", primitive.subtask);
-            let width = primitive
-                .rows
+fn describe(report: &Report) -> String {
+    let mut text = format!("{}, seed {}\n", report.scenario, report.seed);
+    for primitive in &report.primitives {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n{}", primitive.subtask);
+        let width = primitive
+            .rows
+            .iter()
+            .map(|row| row.label.len())
+            .max()
+            .unwrap_or(0);
+        let columns = primitive.actions.iter().enumerate();
+        let columns = columns.map(|(i, action)| format!("{:>14}", format!("{} {action}", i + 1)));
+        let _ = writeln!(
+            text,
+            "  {:width$}  greedy{}",
+            "",
+            columns.collect::<String>()
+        );
+        for row in &primitive.rows {
+            let values = row
+                .q
                 .iter()
-                .map(|row| row.label.len())
-                .max()
-                .unwrap_or(0);
-            let columns = primitive.actions.iter().enumerate();
-            let columns =
-                columns.map(|(i, action)| format!("{:>14}", format!("{} {action}", i + 1)));
+                .map(|q| format!("{q:>14.3}"))
+                .collect::<String>();
             let _ = writeln!(
                 text,
-                "  {:width$}  greedy{}",
-                "",
-                columns.collect::<String>()
+                "  {:width$}  {:>6}{values}",
+                row.label, row.greedy_action
             );
-            for row in &primitive.rows {
-                let values = row
-                    .q
-                    .iter()
-                    .map(|q| format!("{q:>14.3}"))
-                    .collect::<String>();
-                let _ = writeln!(
-                    text,
-                    "  {:width$}  {:>6}{values}",
-                    row.label, row.greedy_action
-                );
-            }
         }
-        text
     }
+    text
 }
 
 fn greedy(values: &[f32]) -> usize {

@@ -7,11 +7,10 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::output::{self, CommandResult, Failure, Format, counted};
-use crate::evolution::{Experiment, read_tree};
 use crate::hierarchy::{Glyphs, Summary, Tree, draw, structural_difference, to_dot, to_text};
-use crate::lab::{WorldTask, with_world};
+use crate::lab::experiment;
 use crate::scenario::Scenario;
-use crate::worlds::{Catalogue, World};
+use crate::worlds::Catalogue;
 
 /// Examples for its help.
 pub(super) const EXAMPLES: &str = "\
@@ -148,22 +147,8 @@ pub(super) fn with_tree<T>(
     text: &str,
     what: impl FnOnce(&Tree, &Catalogue) -> T,
 ) -> Result<T, Failure> {
-    let task = TreeTask { text, what };
-    with_world(scenario.clone(), task)?
-}
-
-struct TreeTask<'t, F> {
-    text: &'t str,
-    what: F,
-}
-
-impl<T, F: FnOnce(&Tree, &Catalogue) -> T> WorldTask for TreeTask<'_, F> {
-    type Output = Result<T, Failure>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let depth = experiment.scenario.evolution.maximum_depth;
-        let tree = read_tree(self.text, experiment.catalogue(), depth)
-            .map_err(|error| format!("{:?}: {error}", self.text))?;
-        Ok((self.what)(&tree, experiment.catalogue()))
-    }
+    let experiment = experiment(scenario.clone(), 0)?;
+    let tree = experiment.read_tree(text);
+    let tree = tree.map_err(|error| format!("{text:?}: {error}"))?;
+    Ok(what(&tree, experiment.catalogue()))
 }

@@ -10,8 +10,7 @@ use super::dashboard::{DashboardArgs, exit_code};
 use super::output::{self, CommandResult, Failure};
 use super::signals::SignalWatcher;
 use crate::dashboard::session::{Exit, Source};
-use crate::lab::specimen::bench;
-use crate::lab::{Life, Manifest, News, Recording, Watch};
+use crate::lab::{Life, Manifest, News, Recording, Watch, lasting_experiment};
 
 /// Time between two looks at the run folder.
 pub(super) const INTERVAL: Duration = Duration::from_millis(250);
@@ -43,8 +42,8 @@ pub(super) fn main(args: &Args) -> CommandResult {
         Found::Run(manifest) => *manifest,
         Found::Signal(signal) => return exit_code(Exit::Signal(signal)),
     };
-    let what = bench(manifest.scenario, manifest.seed)?;
-    exit_code(dashboard.show(what, &args.run_dir, Source::Watched(&watch), &signals)?)
+    let experiment = lasting_experiment(manifest.scenario, manifest.seed)?;
+    exit_code(dashboard.show(experiment, &args.run_dir, Source::Watched(&watch), &signals)?)
 }
 
 /// What came first.
@@ -100,11 +99,11 @@ pub(super) fn replay(args: &ReplayArgs) -> CommandResult {
     let (dashboard, signals) = args.dashboard.require_for_run(&args.run_dir)?;
     let recording = Recording::read(&args.run_dir)?;
     let manifest = &recording.manifest;
-    let what = bench(manifest.scenario.clone(), manifest.seed)?;
-    let start = args.start.read(what)?;
+    let experiment = lasting_experiment(manifest.scenario.clone(), manifest.seed)?;
+    let start = args.start.read(experiment)?;
     let goes_on = recording.life == Life::Computing;
     let exit = dashboard.starting_at(start).show(
-        what,
+        experiment,
         &args.run_dir,
         Source::recorded(recording),
         &signals,

@@ -14,11 +14,11 @@ use serde_json::value::RawValue;
 
 use super::checkpoint_error::{CHECKPOINT_FORMAT, CheckpointError};
 use super::population_file::{IndividualFile, PrimitiveFile, primitives};
-use crate::evolution::{EvolutionState, Experiment};
+use crate::evolution::EvolutionState;
 use crate::files::{parse_json, read_text};
 use crate::learning::{PrimitiveSet, PrimitiveValues};
 use crate::scenario::Scenario;
-use crate::worlds::World;
+use crate::worlds::Catalogue;
 
 /// Largest checkpoint that is read, in bytes; a large population of complete
 /// hierarchies takes a tenth of it.
@@ -101,17 +101,17 @@ impl Checkpoint {
     ///
     /// # Errors
     /// When a learned value is not finite.
-    pub fn of<W: World>(
-        experiment: &Experiment<W>,
+    pub fn of(
+        scenario: &Scenario,
+        catalogue: &Catalogue,
         seed: u64,
         state: &EvolutionState,
         events: LogPosition,
     ) -> Result<Self, CheckpointError> {
         check_finite(state)?;
-        let catalogue = experiment.catalogue();
         let individuals = state.individuals.iter();
         Ok(Self {
-            scenario: experiment.scenario.clone(),
+            scenario: scenario.clone(),
             seed,
             generation: state.generation,
             converged: state.converged,
@@ -209,16 +209,16 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// The state that the checkpoint holds, for the experiment of its scenario.
+    /// The state that the checkpoint holds, for its scenario in the world of `catalogue`.
     ///
     /// # Errors
     /// When hierarchies or learned values do not fit the scenario.
-    pub fn state<W: World>(
+    pub fn state(
         &self,
-        experiment: &Experiment<W>,
+        scenario: &Scenario,
+        catalogue: &Catalogue,
     ) -> Result<EvolutionState, CheckpointError> {
-        let catalogue = experiment.catalogue();
-        let evolution = &experiment.scenario.evolution;
+        let evolution = &scenario.evolution;
         if self.individuals.len() != evolution.population_size {
             return Err(CheckpointError::misfit(
                 "state.individuals",
@@ -232,7 +232,7 @@ impl Checkpoint {
         self.check_counters()?;
         let individuals = self.individuals.iter().enumerate().map(|(index, file)| {
             let place = format!("state.individuals[{index}]");
-            file.individual(&place, catalogue, &experiment.scenario)
+            file.individual(&place, catalogue, scenario)
         });
         Ok(EvolutionState {
             generation: self.generation,

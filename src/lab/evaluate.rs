@@ -21,8 +21,6 @@ pub struct Protocol {
     pub repeats: usize,
     /// Separately trained sets of primitive subtasks that the repeats are spread over.
     pub banks: usize,
-    /// Seed of all random streams.
-    pub seed: u64,
 }
 
 /// One fresh hierarchy's scored trials.
@@ -75,6 +73,7 @@ pub struct Scored {
 /// When the gate is stopped.
 pub fn evaluate<W: World>(
     experiment: &Experiment<W>,
+    seed: u64,
     tree: &Tree,
     protocol: &Protocol,
     workers: &Workers,
@@ -82,12 +81,12 @@ pub fn evaluate<W: World>(
     progress: impl Fn(usize) + Sync,
 ) -> Result<Scored, Stopped> {
     let banks = (0..protocol.banks)
-        .map(|bank| experiment.train(protocol.seed, bank as u64, workers, gate))
+        .map(|bank| experiment.train(seed, bank as u64, workers, gate))
         .collect::<Result<Vec<_>, _>>()?;
     let done = AtomicUsize::new(0);
     let repeats = workers.map((0..protocol.repeats).collect(), |repeat| {
         let bank = repeat % protocol.banks;
-        let scored = one_repeat(experiment, tree, protocol, repeat, &banks[bank], gate)?;
+        let scored = one_repeat(experiment, seed, tree, protocol, repeat, &banks[bank], gate)?;
         progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         Ok(scored)
     })?;
@@ -129,6 +128,7 @@ struct Life {
 
 fn one_repeat<W: World>(
     experiment: &Experiment<W>,
+    seed: u64,
     tree: &Tree,
     protocol: &Protocol,
     repeat: usize,
@@ -136,7 +136,7 @@ fn one_repeat<W: World>(
     gate: &Gate,
 ) -> Result<Life, Stopped> {
     let limit = experiment.scenario.evolution.trial_step_limit;
-    let mut rng = stream(protocol.seed, 0, repeat as u64, Purpose::Evaluation);
+    let mut rng = stream(seed, 0, repeat as u64, Purpose::Evaluation);
     let untrained = experiment.untrained(tree.clone());
     let mut agent = experiment.agent(untrained, primitives.clone());
     let mut life = Life {

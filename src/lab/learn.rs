@@ -10,7 +10,7 @@ use super::learner::{AnyLearner, Learner};
 use super::mean::{Mean, mean};
 use crate::evolution::{Experiment, Workers};
 use crate::learning::{Gate, Stopped};
-use crate::random::{Purpose, stream};
+use crate::random::{Purpose, Stream, stream};
 use crate::worlds::World;
 use crate::worlds::mdp::{MAX_SWEEPS, Mdp, PolicyTable};
 
@@ -30,8 +30,6 @@ pub struct LearnProtocol {
     pub tolerance: f64,
     /// Learners that begin from nothing.
     pub repeats: usize,
-    /// Seed of all random streams.
-    pub seed: u64,
 }
 
 /// What a check found.
@@ -113,6 +111,7 @@ pub enum LearnError {
 /// stopped.
 pub fn learn<W: World>(
     experiment: &Experiment<W>,
+    seed: u64,
     algorithm: &Algorithm,
     protocol: &LearnProtocol,
     workers: &Workers,
@@ -134,7 +133,8 @@ pub fn learn<W: World>(
         (0..protocol.repeats).collect(),
         |repeat| -> Result<_, Stopped> {
             let learner = AnyLearner::new(experiment, &finite, algorithm, exam.policy.as_ref());
-            let course = exam.course(experiment, learner, repeat as u64, gate)?;
+            let rng = stream(seed, 0, repeat as u64, Purpose::Evaluation);
+            let course = exam.course(experiment, learner, rng, gate)?;
             progress(done.fetch_add(1, Ordering::Relaxed) + 1);
             Ok(course)
         },
@@ -204,11 +204,10 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
         &self,
         experiment: &Experiment<W>,
         mut learner: AnyLearner<'_, W>,
-        repeat: u64,
+        mut rng: Stream,
         gate: &Gate,
     ) -> Result<Course, Stopped> {
         let limit = experiment.scenario.evolution.trial_step_limit;
-        let mut rng = stream(self.protocol.seed, 0, repeat, Purpose::Evaluation);
         let mut course = Course {
             steps_until_optimal: None,
             steps_until_always_optimal: None,

@@ -19,9 +19,10 @@ use super::controls::Controls;
 use super::event::Event;
 use super::folder::{Keep, RunFolder};
 use super::log::Log;
-use crate::evolution::{EvolutionState, Experiment, GenerationRecord};
+use crate::evolution::{EvolutionState, GenerationRecord};
 use crate::files::{link_atomically, write_atomically, write_in_one_step};
-use crate::worlds::World;
+use crate::scenario::Scenario;
+use crate::worlds::Catalogue;
 
 /// Messages that wait for the recorder before evolution waits too: a disk that is too
 /// slow slows a run down rather than losing some of it.
@@ -53,8 +54,9 @@ pub enum RecordError {
 }
 
 /// The recorder of one run.
-pub(super) struct Recorder<'r, W: World> {
-    pub(super) experiment: &'r Experiment<W>,
+pub(super) struct Recorder<'r> {
+    pub(super) scenario: &'r Scenario,
+    pub(super) catalogue: &'r Catalogue,
     pub(super) seed: u64,
     pub(super) folder: &'r RunFolder,
     pub(super) keep: Keep,
@@ -68,7 +70,7 @@ struct Pending {
     position: LogPosition,
 }
 
-impl<W: World> Recorder<'_, W> {
+impl Recorder<'_> {
     /// Records until the senders are gone; then everything is on disk. A request asks
     /// for the latest checkpoint now.
     pub(super) fn run(
@@ -154,7 +156,8 @@ impl<W: World> Recorder<'_, W> {
 
     fn bytes(&self, pending: &Pending) -> Result<Vec<u8>, RecordError> {
         let Pending { state, position } = pending;
-        let checkpoint = Checkpoint::of(self.experiment, self.seed, state, *position)?;
+        let checkpoint =
+            Checkpoint::of(self.scenario, self.catalogue, self.seed, state, *position)?;
         Ok(checkpoint.to_bytes().map_err(io::Error::from)?)
     }
 }

@@ -15,11 +15,10 @@ use super::manifest::{Invocation, MANIFEST_FORMAT, Manifest};
 use super::outcome::Outcome;
 use super::run_error::RunError;
 use super::work::Work;
-use super::worlds::{WorldTask, with_world};
-use crate::evolution::{Experiment, Workers};
+use super::world_experiment::experiment;
+use crate::evolution::Workers;
 use crate::files::FileError;
 use crate::scenario::{PrimitiveLearning, Scenario};
-use crate::worlds::World;
 
 /// How a run is carried out; nothing here changes its result.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -193,67 +192,66 @@ struct Preparation {
     checkpoint: Option<Checkpoint>,
 }
 
+/// Reads everything that can be wrong, then starts the evolution thread.
 fn begin(preparation: Preparation) -> Result<Run, RunError> {
-    with_world(preparation.scenario.clone(), preparation)?
-}
-
-impl WorldTask for Preparation {
-    type Output = Result<Run, RunError>;
-
-    /// Reads everything that can be wrong, then starts the evolution thread.
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let (controls, events) = Controls::new();
-        let (folder, manifest) = self.place.folder()?;
-        let path = folder.path().to_owned();
-        let in_file = |name: &str| path.join(name).display().to_string();
-        let state = self
-            .checkpoint
-            .as_ref()
-            .map(|checkpoint| checkpoint.state(&experiment));
-        let state = state.transpose().map_err(|source| RunError::Checkpoint {
-            file: in_file("checkpoint.json"),
-            source,
-        })?;
-        let in_log = |source| RunError::Log {
-            file: in_file("events.jsonl"),
-            source,
-        };
-        let file = folder.events();
-        let (log, past) = match &self.checkpoint {
-            Some(checkpoint) => {
-                let log = Log::reopen(&file, checkpoint.events).map_err(in_log)?;
-                (log, read_events(&file).map_err(in_log)?)
-            }
-            None => (
-                Log::create(&file).map_err(|error| in_log(error.into()))?,
-                Vec::new(),
-            ),
-        };
-        // Written last: a refused resume leaves no trace.
-        if let Some(manifest) = manifest {
-            folder.write_manifest(&manifest)?;
+    let Preparation {
+        scenario,
+        seed,
+        place,
+        workers,
+        keep,
+        checkpoint,
+    } = preparation;
+    let experiment = experiment(scenario.clone(), seed)?;
+    let (controls, events) = Controls::new();
+    let (folder, manifest) = place.folder()?;
+    let path = folder.path().to_owned();
+    let in_file = |name: &str| path.join(name).display().to_string();
+    let state = checkpoint
+        .as_ref()
+        .map(|checkpoint| experiment.population(checkpoint));
+    let state = state.transpose().map_err(|source| RunError::Checkpoint {
+        file: in_file("checkpoint.json"),
+        source,
+    })?;
+    let in_log = |source| RunError::Log {
+        file: in_file("events.jsonl"),
+        source,
+    };
+    let file = folder.events();
+    let (log, past) = match &checkpoint {
+        Some(checkpoint) => {
+            let log = Log::reopen(&file, checkpoint.events).map_err(in_log)?;
+            (log, read_events(&file).map_err(in_log)?)
         }
-        let (scenario, seed) = (self.scenario, self.seed);
-        let work = Work {
-            experiment,
-            seed,
-            folder,
-            workers: self.workers,
-            keep: self.keep,
-            controls: controls.clone(),
-            state,
-        };
-        let thread = thread::Builder::new()
-            .name(String::from("evolution"))
-            .spawn(move || work.run(log, past))
-            .map_err(|error| RunError::Threads(error.to_string()))?;
-        Ok(Run {
-            events,
-            controls,
-            scenario,
-            seed,
-            folder: path,
-            thread,
-        })
+        None => (
+            Log::create(&file).map_err(|error| in_log(error.into()))?,
+            Vec::new(),
+        ),
+    };
+    // Written last: a refused resume leaves no trace.
+    if let Some(manifest) = manifest {
+        folder.write_manifest(&manifest)?;
     }
+    let work = Work {
+        folder,
+        workers,
+        keep,
+        controls: controls.clone(),
+        state,
+        log,
+        past,
+    };
+    let thread = thread::Builder::new()
+        .name(String::from("evolution"))
+        .spawn(move || experiment.run(work))
+        .map_err(|error| RunError::Threads(error.to_string()))?;
+    Ok(Run {
+        events,
+        controls,
+        scenario,
+        seed,
+        folder: path,
+        thread,
+    })
 }

@@ -6,7 +6,19 @@ use super::checkpoint_error::CheckpointError;
 use super::folder_error::FolderError;
 use super::log::LogError;
 use super::recorder::RecordError;
-use super::worlds::SetupError;
+use crate::evolution::ExperimentError;
+use crate::rules::Problem;
+
+/// Why a scenario cannot be made ready.
+#[derive(Debug, Error)]
+pub enum SetupError {
+    /// Its world cannot be built.
+    #[error("{0}")]
+    World(Problem),
+    /// Its first hierarchies cannot be used.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
+}
 
 /// Why a run cannot begin, or had to end.
 #[derive(Debug, Error)]

@@ -22,15 +22,27 @@ use crate::worlds::World;
 /// Largest `summary.json` that is read, in bytes.
 const MAX_SUMMARY_BYTES: u64 = 1 << 20;
 
-/// What the evolution thread owns.
-pub(super) struct Work<W: World> {
-    pub(super) experiment: Experiment<W>,
-    pub(super) seed: u64,
+/// What the evolution thread needs besides the experiment.
+#[derive(Debug)]
+pub struct Work {
     pub(super) folder: RunFolder,
     pub(super) workers: Workers,
     pub(super) keep: Keep,
     pub(super) controls: Controls,
+    pub(super) log: Log,
+    /// The state and the events of a resumed run.
     pub(super) state: Option<EvolutionState>,
+    pub(super) past: Vec<Event>,
+}
+
+/// A run in a world whose type is known.
+struct WorldRun<'w, W: World> {
+    experiment: &'w Experiment<W>,
+    seed: u64,
+    folder: &'w RunFolder,
+    workers: &'w Workers,
+    controls: &'w Controls,
+    state: Option<EvolutionState>,
 }
 
 /// How far evolution came.
@@ -51,24 +63,39 @@ impl Drop for Closing<'_> {
     }
 }
 
-impl<W: World> Work<W> {
-    pub(super) fn run(self, log: Log, past: Vec<Event>) -> Result<Outcome, RunError> {
+impl Work {
+    pub(super) fn run<W: World>(
+        self,
+        experiment: &Experiment<W>,
+        seed: u64,
+    ) -> Result<Outcome, RunError> {
         let started = Instant::now();
-        let _closing = Closing(&self.controls);
-        let _pulse = Pulse::start(self.folder.path(), &self.controls);
+        let controls = &self.controls;
+        let _closing = Closing(controls);
+        let _pulse = Pulse::start(self.folder.path(), controls);
         let (sender, messages) = bounded(QUEUE_CAPACITY);
-        let requests = self.controls.requests();
+        let requests = controls.requests();
         let recorder = Recorder {
-            experiment: &self.experiment,
-            seed: self.seed,
+            scenario: &experiment.scenario,
+            catalogue: experiment.catalogue(),
+            seed,
             folder: &self.folder,
             keep: self.keep,
-            log,
-            controls: &self.controls,
+            log: self.log,
+            controls,
         };
+        let run = WorldRun {
+            experiment,
+            seed,
+            folder: &self.folder,
+            workers: &self.workers,
+            controls,
+            state: self.state,
+        };
+        let past = self.past;
         let (progress, recorded) = thread::scope(|scope| {
             let recording = scope.spawn(move || recorder.run(&messages, &requests));
-            let progress = self.evolve(past, sender);
+            let progress = run.evolve(past, sender);
             (progress, recording.join())
         });
         let folder = self.folder.path().display().to_string();
@@ -79,8 +106,8 @@ impl<W: World> Work<W> {
                 source,
             })?;
         let outcome = Outcome {
-            scenario: self.experiment.scenario.name.clone(),
-            seed: self.seed,
+            scenario: experiment.scenario.name.clone(),
+            seed,
             generations: progress.generations,
             converged: progress.converged,
             stopped: !progress.over,
@@ -90,7 +117,7 @@ impl<W: World> Work<W> {
             run_dir: folder.clone(),
         };
         // A run that was over before keeps the time that it took.
-        if progress.over && !self.is_summed_up(&outcome) {
+        if progress.over && !is_summed_up(&self.folder, &outcome) {
             let written = serde_json::to_vec_pretty(&outcome)
                 .map_err(std::io::Error::from)
                 .and_then(|bytes| write_atomically(&self.folder.summary(), &bytes));
@@ -101,22 +128,9 @@ impl<W: World> Work<W> {
         }
         Ok(outcome)
     }
+}
 
-    /// Whether `summary.json` holds this result, in whatever time it was computed and
-    /// wherever the folder was then.
-    fn is_summed_up(&self, outcome: &Outcome) -> bool {
-        let text = read_text(&self.folder.summary(), MAX_SUMMARY_BYTES).ok();
-        let written: Option<Outcome> = text.and_then(|text| serde_json::from_str(&text).ok());
-        written.is_some_and(|written| {
-            let now = Outcome {
-                wall_seconds: written.wall_seconds,
-                run_dir: written.run_dir.clone(),
-                ..outcome.clone()
-            };
-            now == written
-        })
-    }
-
+impl<W: World> WorldRun<'_, W> {
     /// The loop of Algorithm 3.1. Ends early when the run is stopped or the recorder
     /// has failed and gone.
     fn evolve(&self, past: Vec<Event>, recorder: Sender<Message>) -> Progress {
@@ -143,9 +157,9 @@ impl<W: World> Work<W> {
         progress: &mut Progress,
         recorder: &Sender<Message>,
     ) -> Result<(), Stopped> {
-        let (seed, workers) = (self.seed, &self.workers);
+        let (seed, workers) = (self.seed, self.workers);
         let scenario = &self.experiment.scenario;
-        let controls = &self.controls;
+        let controls = self.controls;
         let population = scenario.evolution.population_size;
         let show = |generation, lived| {
             controls.tell(Event::Progress {
@@ -165,7 +179,7 @@ impl<W: World> Work<W> {
         }
         let mut evolution = match self.state.clone() {
             Some(state) => {
-                Evolution::resume(&self.experiment, workers, seed, state, controls.gate())?
+                Evolution::resume(self.experiment, workers, seed, state, controls.gate())?
             }
             None => {
                 let started = Event::Started {
@@ -175,7 +189,7 @@ impl<W: World> Work<W> {
                 };
                 self.fact(started, recorder)?;
                 show(0, 0);
-                Evolution::begin(&self.experiment, workers, seed, controls.gate())?
+                Evolution::begin(self.experiment, workers, seed, controls.gate())?
             }
         };
         // A resumed run too: its limit may be new, and the process before may have died
@@ -237,6 +251,21 @@ impl<W: World> Work<W> {
         let state = Message::State(Arc::clone(evolution.state()));
         recorder.send(state).map_err(|_| Stopped)
     }
+}
+
+/// Whether `summary.json` holds this result, in whatever time it was computed and
+/// wherever the folder was then.
+fn is_summed_up(folder: &RunFolder, outcome: &Outcome) -> bool {
+    let text = read_text(&folder.summary(), MAX_SUMMARY_BYTES).ok();
+    let written: Option<Outcome> = text.and_then(|text| serde_json::from_str(&text).ok());
+    written.is_some_and(|written| {
+        let now = Outcome {
+            wall_seconds: written.wall_seconds,
+            run_dir: written.run_dir.clone(),
+            ..outcome.clone()
+        };
+        now == written
+    })
 }
 
 impl Progress {

@@ -3,13 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::evolution::Experiment;
 use crate::hierarchy::{Tree, complete, flat, to_text};
-use crate::lab::{SetupError, WorldTask, with_world};
+use crate::lab::{SetupError, experiment};
 use crate::scenario::{
     CompositeChoice, Inheritance, Scenario, ScenarioError, Selection, Variation,
 };
-use crate::worlds::{Catalogue, World};
+use crate::worlds::Catalogue;
 
 /// One arm: a base and named settings.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -138,7 +137,7 @@ impl Arm {
             Base::HandDesigned => learning_only(&mut scenario, complete)?,
             Base::Flat => learning_only(&mut scenario, flat)?,
         }
-        with_world(scenario.clone(), Ready)?;
+        experiment(scenario.clone(), 0)?;
         Ok(scenario)
     }
 }
@@ -147,28 +146,11 @@ fn learning_only(
     scenario: &mut Scenario,
     design: fn(&Catalogue) -> Tree,
 ) -> Result<(), SetupError> {
-    let text = with_world(scenario.clone(), Text(design))?;
+    let experiment = experiment(scenario.clone(), 0)?;
+    let catalogue = experiment.catalogue();
+    let text = to_text(&design(catalogue), catalogue);
     let evolution = &mut scenario.evolution;
     evolution.variation = Variation::None;
     evolution.initial_population = vec![text; evolution.population_size];
     Ok(())
-}
-
-struct Text(fn(&Catalogue) -> Tree);
-
-impl WorldTask for Text {
-    type Output = String;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> String {
-        let catalogue = experiment.catalogue();
-        to_text(&self.0(catalogue), catalogue)
-    }
-}
-
-struct Ready;
-
-impl WorldTask for Ready {
-    type Output = ();
-
-    fn carry_out<W: World + 'static>(self, _experiment: Experiment<W>) {}
 }

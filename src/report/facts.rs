@@ -4,11 +4,10 @@ use serde::Serialize;
 
 use super::single::{SingleError, check_evaluation, check_origin, fresh, summary};
 use super::study::{RunId, Study};
-use crate::evolution::{Experiment, GenerationRecord, RankedRecord, TreeError, read_tree};
+use crate::evolution::{GenerationRecord, RankedRecord, TreeError};
 use crate::files::FileError;
 use crate::hierarchy::{canonical, without_repeats};
-use crate::lab::{Event, RunError, WorldTask, read_events, with_world};
-use crate::worlds::World;
+use crate::lab::{AnyExperiment, Event, RunError, experiment, read_events};
 
 /// A run that is done.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -101,8 +100,8 @@ impl Facts {
         let best = records.last().and_then(|record| record.individuals.first());
         let best =
             best.ok_or_else(|| FileError::new(&file, String::from("holds no generation")))?;
-        let winner = with_world(scenario, OfTree(best))?;
-        let winner = winner.map_err(|error| {
+        let experiment = experiment(scenario, run.seed)?;
+        let winner = Winner::of(best, &*experiment).map_err(|error| {
             let message = format!("the best hierarchy: {error}");
             FileError::new(&file, message)
         })?;
@@ -182,25 +181,21 @@ fn policy_change(before: &GenerationRecord, after: &GenerationRecord) -> f64 {
     distances.iter().sum::<f64>() / distances.len().max(1) as f64
 }
 
-struct OfTree<'r>(&'r RankedRecord);
-
-impl WorldTask for OfTree<'_> {
-    type Output = Result<Winner, TreeError>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
+impl Winner {
+    /// Reads the tree of the best individual.
+    fn of(record: &RankedRecord, experiment: &dyn AnyExperiment) -> Result<Self, TreeError> {
         let catalogue = experiment.catalogue();
-        let depth = experiment.scenario.evolution.maximum_depth;
-        let tree = read_tree(&self.0.tree, catalogue, depth)?;
+        let tree = experiment.read_tree(&record.tree)?;
         let composites = tree.nodes().iter().filter_map(|node| {
             let subtask = catalogue.subtask(node.subtask);
             subtask.is_composite().then(|| subtask.name.to_owned())
         });
-        Ok(Winner {
+        Ok(Self {
             composites: composites.collect(),
             structure: canonical(&without_repeats(&tree, catalogue), catalogue),
-            tree: self.0.tree.clone(),
-            primitives: self.0.primitives.clone(),
-            selectable: self.0.primitives_by_state_type.clone(),
+            tree: record.tree.clone(),
+            primitives: record.primitives.clone(),
+            selectable: record.primitives_by_state_type.clone(),
         })
     }
 }

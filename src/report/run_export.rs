@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::figures::{RunSource, SourceError};
 use super::table::{Table, short};
-use crate::evolution::{Experiment, GenerationRecord, Origin, read_tree};
+use crate::evolution::{GenerationRecord, Origin};
 use crate::hierarchy::to_dot;
-use crate::lab::{SetupError, WorldTask, with_world};
-use crate::worlds::World;
+use crate::lab::{SetupError, experiment};
+use crate::scenario::Scenario;
 
 /// One row an individual of a generation.
 #[must_use]
@@ -145,21 +145,19 @@ pub fn dot(run: &RunSource) -> Result<String, SetupError> {
         .last()
         .and_then(|record| record.individuals.first());
     let tree = best.map(|best| best.tree.clone()).unwrap_or_default();
-    let dot = with_world(run.scenario.clone(), Dot(&tree))?;
+    let dot = tree_dot(&run.scenario, &tree)?;
     Ok(format!("// {}\n{dot}", run.provenance("--format dot")))
 }
 
 /// A hierarchy as DOT; nothing where it is none.
-pub(super) struct Dot<'t>(pub(super) &'t str);
-
-impl WorldTask for Dot<'_> {
-    type Output = String;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> String {
-        let catalogue = experiment.catalogue();
-        let depth = experiment.scenario.evolution.maximum_depth;
-        let tree = read_tree(self.0, catalogue, depth);
-        tree.map(|tree| to_dot(&tree, catalogue))
-            .unwrap_or_default()
-    }
+///
+/// # Errors
+/// When the scenario cannot be made ready.
+pub(super) fn tree_dot(scenario: &Scenario, tree: &str) -> Result<String, SetupError> {
+    let experiment = experiment(scenario.clone(), 0)?;
+    let tree = experiment.read_tree(tree);
+    Ok(tree.map_or_else(
+        |_| String::new(),
+        |tree| to_dot(&tree, experiment.catalogue()),
+    ))
 }

@@ -10,15 +10,14 @@ use thiserror::Error;
 use super::arm::{Arm, ArmError, Base};
 use super::controls::StudyControls;
 use super::study::{RunId, Study};
-use crate::evolution::{Evolution, Experiment, TreeError, Workers, read_tree};
+use crate::evolution::Workers;
 use crate::files::{FileError, parse_json, read_text, write_atomically};
 use crate::lab::{
     Evaluation, FolderError, Keep, Manifest, Outcome, Protocol, RunError, RunFolder, RunOptions,
-    SetupError, WorldTask, evaluate, resume, start, with_world,
+    SetupError, experiment, resume, start,
 };
-use crate::learning::{Gate, Stopped};
+use crate::learning::Stopped;
 use crate::scenario::Scenario;
-use crate::worlds::World;
 
 /// The file with the result of a run.
 pub(super) const SUMMARY: &str = "summary.json";
@@ -180,11 +179,9 @@ impl Single<'_> {
             ..own.clone()
         };
         let scenario = evolved.apply(self.study.scenario(&self.run))?;
-        let task = Generations {
-            seed: self.run.seed,
-            gate: self.controls.gate(),
-        };
-        with_world(scenario, task)?
+        let experiment = experiment(scenario, self.run.seed)?;
+        let state = experiment.evolve(&one_worker()?, self.controls.gate())?;
+        Ok(state.generation)
     }
 
     fn evaluate(&self, folder: &Path, scenario: Scenario) -> Result<Fresh, SingleError> {
@@ -204,23 +201,19 @@ impl Single<'_> {
             trials: plan.trials,
             repeats: plan.repeats,
             banks: plan.banks,
-            seed: fresh_seed(&self.run),
         };
-        let task = Evaluate {
-            tree: &tree,
-            protocol: &protocol,
-            gate: self.controls.gate(),
-        };
-        let evaluation = with_world(scenario, task)?.map_err(|error| match error {
-            Unevaluated::Stopped => SingleError::Stopped(Stopped),
-            Unevaluated::Tree(error) => misfit(format!("best.tree: {error}")).into(),
-            Unevaluated::Threads(error) => SingleError::Threads(error),
-        })?;
+        let seed = fresh_seed(&self.run);
+        let experiment = experiment(scenario, seed)?;
+        let tree = experiment
+            .read_tree(&tree)
+            .map_err(|error| misfit(format!("best.tree: {error}")))?;
+        let (workers, gate) = (one_worker()?, self.controls.gate());
+        let scored = experiment.evaluate(&tree, &protocol, &workers, gate, &|_| {})?;
         let fresh = Fresh {
             format: FRESH_FORMAT,
-            seed: protocol.seed,
+            seed,
             warmup: protocol.warmup,
-            evaluation,
+            evaluation: scored.evaluation,
         };
         let written = serde_json::to_vec(&fresh)
             .map_err(std::io::Error::from)
@@ -228,6 +221,11 @@ impl Single<'_> {
         written.map_err(|error| FileError::new(&path, error))?;
         Ok(fresh)
     }
+}
+
+/// Each run of a study is computed by one thread; runs share the processors.
+fn one_worker() -> Result<Workers, SingleError> {
+    Workers::new(1).map_err(|error| SingleError::Threads(error.to_string()))
 }
 
 /// The `run.json` of a run, which must be that of the plan's; only its budget may be
@@ -329,56 +327,4 @@ fn read<T: for<'t> Deserialize<'t>>(path: PathBuf) -> Result<Option<T>, SingleEr
     }
     let value = parse_json(&read_text(&path, MAX_RESULT_BYTES)?);
     Ok(Some(value.map_err(|error| FileError::new(path, error))?))
-}
-
-/// How long an evolution takes, computed without a folder.
-struct Generations<'g> {
-    seed: u64,
-    gate: &'g Gate,
-}
-
-impl WorldTask for Generations<'_> {
-    type Output = Result<u64, SingleError>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let workers = Workers::new(1).map_err(|error| SingleError::Threads(error.to_string()))?;
-        let mut evolution = Evolution::begin(&experiment, &workers, self.seed, self.gate)?;
-        while !evolution.is_over() {
-            evolution.step(self.gate, |_| {})?;
-        }
-        Ok(evolution.state().generation)
-    }
-}
-
-struct Evaluate<'e> {
-    tree: &'e str,
-    protocol: &'e Protocol,
-    gate: &'e Gate,
-}
-
-enum Unevaluated {
-    Stopped,
-    Tree(TreeError),
-    Threads(String),
-}
-
-impl WorldTask for Evaluate<'_> {
-    type Output = Result<Evaluation, Unevaluated>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let depth = experiment.scenario.evolution.maximum_depth;
-        let tree =
-            read_tree(self.tree, experiment.catalogue(), depth).map_err(Unevaluated::Tree)?;
-        let workers = Workers::new(1).map_err(|error| Unevaluated::Threads(error.to_string()))?;
-        let scored = evaluate(
-            &experiment,
-            &tree,
-            self.protocol,
-            &workers,
-            self.gate,
-            |_| {},
-        );
-        let evaluation = scored.map(|scored| scored.evaluation);
-        evaluation.map_err(|_| Unevaluated::Stopped)
-    }
 }

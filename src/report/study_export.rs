@@ -5,11 +5,11 @@ use super::document;
 use super::facts::Facts;
 use super::findings::Findings;
 use super::provenance::Provenance;
-use super::run_export::Dot;
+use super::run_export::tree_dot;
 use super::study::Study;
 use super::table::Table;
 use super::tables::runs_table;
-use crate::lab::{SetupError, with_world};
+use crate::lab::SetupError;
 
 /// One row a run.
 #[must_use]
@@ -50,7 +50,7 @@ pub fn dot(study: &Study, all: &[Facts]) -> Result<String, SetupError> {
             continue;
         };
         if arm.is_some_and(|arm| arm.base == Base::Evolved) {
-            let dot = with_world(scenario.clone(), Dot(structure))?;
+            let dot = tree_dot(scenario, structure)?;
             text += &format!(
                 "// {}, {}: {times} of {} runs\n{dot}",
                 kind.scenario, kind.arm, kind.n

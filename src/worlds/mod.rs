@@ -18,7 +18,7 @@ pub use catalogue::{
     Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,
     StateTypes, Subtask, SubtaskId,
 };
-pub use settings::{Settings, Visitor};
+pub use settings::{Settings, WorldFn};
 pub use training::{Exploration, TrainingSettings};
 
 use self::mdp::Mdp;

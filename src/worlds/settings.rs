@@ -26,13 +26,13 @@ pub trait Settings {
     }
 }
 
-/// Something to be done with a world, whichever it is.
-pub trait Visitor {
-    /// What comes of it.
+/// A function of a world of any type: [`call`](WorldFn::call) is compiled once for each world.
+pub trait WorldFn {
+    /// What the function returns.
     type Output;
 
-    /// Does it. This is compiled once for each world.
-    fn visit<W: Scenic + 'static>(self, world: W) -> Self::Output;
+    /// Calls the function.
+    fn call<W: Scenic + 'static>(self, world: W) -> Self::Output;
 }
 
 /// The sum of the worlds: the type of their settings, and the one place that tells one
@@ -70,13 +70,13 @@ macro_rules! worlds {
                 }
             }
 
-            /// Builds the world and hands it to `visitor`.
+            /// Builds the world and calls `function` with it.
             ///
             /// # Errors
             /// When the settings make no world; the problem's place is below `world`.
-            pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, Problem> {
+            pub fn build<F: WorldFn>(&self, function: F) -> Result<F::Output, Problem> {
                 let built = match self {
-                    $(Self::$name(model) => model.build().map(|world| visitor.visit(world)),)+
+                    $(Self::$name(model) => model.build().map(|world| function.call(world)),)+
                 };
                 built.map_err(|problem| problem.within(self.name()))
             }

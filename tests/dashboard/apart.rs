@@ -155,7 +155,7 @@ fn every_part_of_a_step_is_on_the_screen() {
     screen.press("t .");
     let trace = screen.0.app().context().player.trace(0).unwrap().clone();
     let text = screen.text();
-    let catalogue = foraging().bench.catalogue();
+    let catalogue = foraging().experiment.catalogue();
     let tree = screen.0.app().context().player.tree().unwrap().clone();
     let name = |node: usize| tree.subtask(node).name(catalogue);
     for level in &trace.explanation.levels {

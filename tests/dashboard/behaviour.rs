@@ -292,7 +292,7 @@ fn a_subtask_is_selected_in_the_hierarchy() {
     let mut screen = screen();
     let tree = screen.0.app().context().inspected_tree().unwrap();
     screen.press("3 j");
-    let subtask = foraging().bench.catalogue().subtask(tree.subtask(1));
+    let subtask = foraging().experiment.catalogue().subtask(tree.subtask(1));
     let about = format!("{}: {}", subtask.name, subtask.purpose);
     assert!(
         screen.text().contains(&about),

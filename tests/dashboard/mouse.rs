@@ -70,7 +70,7 @@ fn a_click_selects_a_subtask_of_the_inspector() {
         screen.press("i");
         let tree = screen.0.app().context().player.tree().unwrap().clone();
         let last = tree.subtask(tree.nodes().len() - 1);
-        let name = last.name(foraging().bench.catalogue());
+        let name = last.name(foraging().experiment.catalogue());
         act(&mut screen, Gesture::Click, &format!("└─ {name}"));
         assert!(screen.text().contains("▸"), "{}", screen.text());
         assert_eq!(find(&screen.text(), "▸ ").y, find(&screen.text(), name).y);
@@ -86,7 +86,7 @@ fn a_click_selects_a_subtask_and_a_second_takes_it_apart() {
     let line = format!(
         "└─ {}",
         foraging()
-            .bench
+            .experiment
             .catalogue()
             .subtask(tree.subtask(last))
             .name

@@ -8,8 +8,8 @@ use maxq_lab::dashboard::keys::KeyMap;
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
 use maxq_lab::dashboard::{App, Effect, Input, Mode, OffscreenDashboard, ViewContext};
 use maxq_lab::hierarchy::Glyphs;
-use maxq_lab::lab::specimen::{Archive, Bench, Start, bench};
-use maxq_lab::lab::{Event, Recording};
+use maxq_lab::lab::inspection::{Archive, Start};
+use maxq_lab::lab::{AnyExperiment, Event, Recording, lasting_experiment};
 use maxq_lab::scenario::Scenario;
 use tempfile::TempDir;
 
@@ -17,7 +17,7 @@ use super::common;
 
 /// A run that was recorded.
 pub struct Recorded {
-    pub bench: &'static dyn Bench,
+    pub experiment: &'static dyn AnyExperiment,
     pub events: Vec<Event>,
     pub folder: PathBuf,
     _parent: TempDir,
@@ -30,7 +30,7 @@ impl Recorded {
         let folder = parent.path().join("run");
         common::run_in(&folder, scenario, 1, &common::threads(1));
         Self {
-            bench: bench(scenario.clone(), 1).unwrap(),
+            experiment: lasting_experiment(scenario.clone(), 1).unwrap(),
             events: Recording::read(&folder).unwrap().events,
             folder,
             _parent: parent,
@@ -54,9 +54,9 @@ impl Recorded {
 
     fn app(&self, mode: Mode, theme: &str, glyphs: Glyphs) -> App {
         let look = Look::new(Theme::all(), theme, Signs::of(glyphs));
-        let folder = format!("runs/{}-seed1", self.bench.scenario().name);
+        let folder = format!("runs/{}-seed1", self.experiment.scenario().name);
         App::new(ViewContext::new(
-            self.bench,
+            self.experiment,
             folder,
             mode,
             look,
@@ -67,7 +67,7 @@ impl Recorded {
     fn still(&self, app: App) -> Screen {
         Screen(OffscreenDashboard::new(
             app,
-            Archive::new(self.bench, &self.folder, None),
+            Archive::new(self.experiment, &self.folder, None),
         ))
     }
 

@@ -2,7 +2,6 @@
 //! is cut says so.
 
 use maxq_lab::hierarchy::Glyphs::Unicode;
-use maxq_lab::lab::specimen::Start;
 
 use super::common;
 use super::frames::{MIDDLE, SMALL};
@@ -39,13 +38,13 @@ fn the_state_is_named_in_full() {
             "in taxi to B: 3 passenger in taxi, not at destination",
         ),
     ] {
-        let start = Start::read(case, learned().bench).unwrap();
+        let start = learned().experiment.read_start(case).unwrap();
         let screen = learned().screen_from(Some(start), "dark", Unicode, SMALL);
         let arena = panel(&screen.text(), "Arena");
         assert!(arena.contains(state), "{state}: {arena}");
     }
     let mut screen = foraging().screen("dark", Unicode, SMALL);
-    let names = &foraging().bench.catalogue().state_types;
+    let names = &foraging().experiment.catalogue().state_types;
     for _ in 0..40 {
         screen.press("space . space");
         screen.wait(0.5);
@@ -87,7 +86,7 @@ fn lengths_of_trials_are_whole_or_left_out() {
 fn state_types_are_named_in_full_in_the_policy_panel() {
     for run in [foraging(), learned(), &cells("cliff")] {
         let policy = panel(&run.screen("dark", Unicode, MIDDLE).text(), "Policy");
-        for (index, info) in run.bench.catalogue().state_types.iter().enumerate() {
+        for (index, info) in run.experiment.catalogue().state_types.iter().enumerate() {
             let title = format!("{} {}", index + 1, info.description);
             assert!(policy.contains(&title), "{title}: {policy}");
         }
@@ -98,7 +97,10 @@ fn state_types_are_named_in_full_in_the_policy_panel() {
 /// every node of the call stack are there.
 #[test]
 fn the_stepper_says_everything_in_little_room() {
-    let start = Start::read("in taxi to B at 2,2", learned().bench).unwrap();
+    let start = learned()
+        .experiment
+        .read_start("in taxi to B at 2,2")
+        .unwrap();
     let mut screen = learned().screen_from(Some(start), "dark", Unicode, SMALL);
     screen.press("t . .");
     let text = screen.text();

@@ -3,7 +3,6 @@
 use std::sync::OnceLock;
 
 use maxq_lab::hierarchy::Glyphs::{Ascii, Unicode};
-use maxq_lab::lab::specimen::Start;
 use maxq_lab::scenario::Scenario;
 
 use super::frames::assert_looks;
@@ -50,7 +49,7 @@ fn the_numbers_of_the_taxi_are_seen() {
         (Unicode, (200, 60)),
         (Ascii, (120, 40)),
     ] {
-        let start = Start::read(FIGURE_2_6, learned().bench).unwrap();
+        let start = learned().experiment.read_start(FIGURE_2_6).unwrap();
         let mut screen = learned().screen_from(Some(start), "dark", glyphs, size);
         screen.press("t .");
         let text = screen.text();
@@ -79,7 +78,7 @@ fn the_numbers_of_the_taxi_are_seen() {
 
 #[test]
 fn values_and_greedy_actions_stand_in_the_cells() {
-    let start = Start::read(FIGURE_2_6, learned().bench).unwrap();
+    let start = learned().experiment.read_start(FIGURE_2_6).unwrap();
     for (name, theme, glyphs, size, keys) in [
         ("cells_taxi_80x24", "dark", Unicode, (80, 24), "2"),
         ("cells_taxi_80x24_ascii", "mono", Ascii, (80, 24), "2"),
@@ -198,7 +197,11 @@ fn a_state_that_cannot_be_is_refused() {
         "from R to B at 5,0",
         "",
     ] {
-        let error = Start::read(wrong, learned().bench).unwrap_err().to_string();
+        let error = learned()
+            .experiment
+            .read_start(wrong)
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(&format!("{wrong:?}")), "{error}");
         assert!(
             error.contains("from R to G") && error.contains("5,5"),

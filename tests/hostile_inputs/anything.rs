@@ -3,11 +3,10 @@
 use std::fs;
 use std::sync::LazyLock;
 
-use maxq_lab::evolution::{Experiment, read_tree};
+use maxq_lab::evolution::read_tree;
 use maxq_lab::hierarchy::{canonical, parse, to_text};
-use maxq_lab::lab::{Checkpoint, WorldTask, read_events, with_world};
+use maxq_lab::lab::{Checkpoint, experiment, read_events};
 use maxq_lab::scenario::Scenario;
-use maxq_lab::worlds::{Catalogue, World};
 use proptest::prelude::*;
 
 use super::common::{Record, record, short, smoke, threads};
@@ -68,57 +67,27 @@ fn changed(text: &str, changes: &[Change]) -> String {
 /// Does what a reader of scenarios does with one.
 fn make_ready(text: &str) {
     if let Ok(scenario) = Scenario::parse(text, "fuzzed.json") {
-        let _refused_or_ready = with_world(scenario, Ready);
-    }
-}
-
-struct Ready;
-
-impl WorldTask for Ready {
-    type Output = ();
-
-    fn carry_out<W: World + 'static>(self, _experiment: Experiment<W>) {}
-}
-
-/// Rebuilds the state of a checkpoint.
-struct State<'c>(&'c Checkpoint);
-
-impl WorldTask for State<'_> {
-    type Output = ();
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) {
-        let _refused_or_rebuilt = self.0.state(&experiment);
+        let _refused_or_ready = experiment(scenario, 1);
     }
 }
 
 fn rebuild(text: &str) {
     if let Ok(checkpoint) = Checkpoint::from_text(text) {
-        let _refused_or_rebuilt = with_world(checkpoint.scenario.clone(), State(&checkpoint));
-    }
-}
-
-/// Something done with the subtasks of `smoke`.
-struct WithCatalogue<F>(F);
-
-impl<F: FnOnce(&Catalogue)> WorldTask for WithCatalogue<F> {
-    type Output = ();
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) {
-        (self.0)(experiment.catalogue());
+        let experiment = experiment(checkpoint.scenario.clone(), checkpoint.seed);
+        let _refused_or_rebuilt = experiment.map(|experiment| experiment.population(&checkpoint));
     }
 }
 
 fn read_any_tree(text: &str) {
-    let task = WithCatalogue(|catalogue: &Catalogue| {
-        if let Ok(tree) = parse(text, catalogue) {
-            assert!(!canonical(&tree, catalogue).is_empty());
-        }
-        if let Ok(tree) = read_tree(text, catalogue, 4) {
-            let again = read_tree(&to_text(&tree, catalogue), catalogue, 4);
-            assert_eq!(again, Ok(tree), "{text:?}");
-        }
-    });
-    with_world(smoke(&[]), task).unwrap();
+    let experiment = experiment(smoke(&[]), 1).unwrap();
+    let catalogue = experiment.catalogue();
+    if let Ok(tree) = parse(text, catalogue) {
+        assert!(!canonical(&tree, catalogue).is_empty());
+    }
+    if let Ok(tree) = read_tree(text, catalogue, 4) {
+        let again = read_tree(&to_text(&tree, catalogue), catalogue, 4);
+        assert_eq!(again, Ok(tree), "{text:?}");
+    }
 }
 
 static RECORD: LazyLock<Record> = LazyLock::new(|| record(&short(&[]), 1, &threads(2)));

@@ -15,12 +15,19 @@ fn a_hierarchy_with_state_abstraction_needs_fewer_steps_than_flat_q_learning() {
         every: 2000,
         tolerance: 1.0,
         repeats: 4,
-        seed: 1,
     };
     let workers = Workers::new(1).unwrap();
     let steps = |algorithm: &Algorithm| {
         let gate = Gate::default();
-        let learned = learn(&experiment, algorithm, &protocol, &workers, &gate, |_| {});
+        let learned = learn(
+            &experiment,
+            1,
+            algorithm,
+            &protocol,
+            &workers,
+            &gate,
+            |_| {},
+        );
         learned.unwrap().steps_until_optimal.unwrap().mean
     };
     let hierarchy = steps(&Algorithm::MaxqQ(hand_made(&experiment)));

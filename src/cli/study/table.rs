@@ -15,8 +15,7 @@ use crate::cli::watch::INTERVAL;
 use crate::dashboard::session::{Exit, RunsExit, RunsSession, Source};
 use crate::dashboard::terminal::Terminal;
 use crate::dashboard::{RunRow, RunsNews, Standing};
-use crate::lab::specimen::bench;
-use crate::lab::{Life, Recording, Watch};
+use crate::lab::{Life, Recording, Watch, lasting_experiment};
 use crate::report::{RunState, RunStatus, StatusWatch, Study, course};
 
 /// Time between two looks at the study's folder, at least.
@@ -68,7 +67,7 @@ fn open(
 ) -> Result<Exit, Failure> {
     let recording = Recording::read(folder)?;
     let manifest = &recording.manifest;
-    let what = bench(manifest.scenario.clone(), manifest.seed)?;
+    let experiment = lasting_experiment(manifest.scenario.clone(), manifest.seed)?;
     let watch = match recording.life {
         Life::Computing => Some(Watch::start(folder, INTERVAL)?),
         _ => None,
@@ -77,7 +76,7 @@ fn open(
         Some(watch) => Source::Watched(watch),
         None => Source::recorded(recording),
     };
-    let session = dashboard.session(what, folder, source, terminal)?;
+    let session = dashboard.session(experiment, folder, source, terminal)?;
     Ok(session.within().run(&signals.heard)?)
 }
 

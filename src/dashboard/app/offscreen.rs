@@ -3,7 +3,7 @@
 use super::state::App;
 use crate::dashboard::context::{Effect, Input};
 use crate::dashboard::view_id::ViewId;
-use crate::lab::specimen::Archive;
+use crate::lab::inspection::Archive;
 
 /// A dashboard without a terminal, over a run that is on disk. It fetches what the
 /// dashboard asks for at once; what cannot be done without a terminal or a run under way

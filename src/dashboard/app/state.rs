@@ -19,7 +19,7 @@ use crate::dashboard::panel::{SMALLEST, body, panel, too_small};
 use crate::dashboard::view_id::ViewId;
 use crate::dashboard::views::{self, View, panels};
 use crate::lab::Event;
-use crate::lab::specimen::Start;
+use crate::lab::inspection::Start;
 
 /// The dashboard.
 pub struct App {

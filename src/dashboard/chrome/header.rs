@@ -40,7 +40,7 @@ pub(in crate::dashboard) fn draw(
     let text = format!(
         " {} {separator} {time} {separator} {name} seed {}",
         view.title(),
-        context.bench.seed()
+        context.experiment.seed()
     );
     column = put(
         buffer,

@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use crate::evolution::EvolutionState;
 use crate::hierarchy::Tree;
-use crate::lab::specimen::{Bench, PolicyMap, Rollout, Specimen, Start, StepTrace};
+use crate::lab::AnyExperiment;
+use crate::lab::inspection::{InspectedIndividual, PolicyMap, Rollout, Start, StepTrace};
 
 /// Speeds of a rollout: times real time.
 pub const SPEEDS: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
@@ -56,7 +57,7 @@ struct Recorded {
 /// A rollout of the individual that is looked at, on a copy with a random stream of its
 /// own: watching never touches evolution.
 pub struct RolloutPlayer {
-    bench: &'static dyn Bench,
+    experiment: &'static dyn AnyExperiment,
     population: Option<Arc<EvolutionState>>,
     /// The generation that was asked for last, and why it is not there.
     asked: Option<u64>,
@@ -76,9 +77,9 @@ pub struct RolloutPlayer {
 }
 
 impl RolloutPlayer {
-    pub(in crate::dashboard) fn new(bench: &'static dyn Bench) -> Self {
+    pub(in crate::dashboard) fn new(experiment: &'static dyn AnyExperiment) -> Self {
         Self {
-            bench,
+            experiment,
             population: None,
             asked: None,
             refused: None,
@@ -109,14 +110,14 @@ impl RolloutPlayer {
 
     /// The individual on the player, with what it had learned when it came there.
     #[must_use]
-    pub fn specimen(&self) -> Option<Specimen<'_>> {
-        Specimen::with_id(self.population.as_deref()?, self.subject?.id)
+    pub fn individual(&self) -> Option<InspectedIndividual<'_>> {
+        InspectedIndividual::with_id(self.population.as_deref()?, self.subject?.id)
     }
 
     /// The hierarchy of the individual on the player.
     #[must_use]
     pub fn tree(&self) -> Option<&Tree> {
-        Some(self.specimen()?.individual.hierarchy.tree())
+        Some(self.individual()?.individual.hierarchy.tree())
     }
 
     /// The rollout.
@@ -315,10 +316,10 @@ impl RolloutPlayer {
     }
 
     fn begin(&mut self) {
-        let (bench, number, start) = (self.bench, self.number, self.start);
+        let (experiment, number, start) = (self.experiment, self.number, self.start);
         let rollout = self
-            .specimen()
-            .map(|specimen| bench.rollout(specimen, number, start));
+            .individual()
+            .map(|individual| experiment.rollout(individual, number, start));
         self.rollout = rollout;
         self.recorded.clear();
         self.owed = 0.0;
@@ -340,7 +341,11 @@ impl RolloutPlayer {
             }
             self.held_for = Duration::ZERO;
         }
-        let step_s = self.bench.scenery().time_step_s.unwrap_or(NOMINAL_STEP_S);
+        let step_s = self
+            .experiment
+            .scenery()
+            .time_step_s
+            .unwrap_or(NOMINAL_STEP_S);
         self.owed += elapsed.as_secs_f64() * f64::from(speed) / step_s;
         let steps = (self.owed as u32).min(MOST_STEPS);
         if steps == 0 {

@@ -12,8 +12,7 @@ use crate::dashboard::look::{Look, Paint};
 use crate::dashboard::view_id::ViewId;
 use crate::evolution::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Tree, parse};
-use crate::lab::departures;
-use crate::lab::specimen::Bench;
+use crate::lab::{AnyExperiment, departures};
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 use crate::worlds::scene::Scenery;
@@ -77,7 +76,7 @@ pub enum Activity {
 /// What every view reads: the run, and what the person has chosen to see of it.
 pub struct ViewContext {
     /// The scenario and its world.
-    pub bench: &'static dyn Bench,
+    pub experiment: &'static dyn AnyExperiment,
     /// The run folder, for people.
     pub folder: String,
     /// The settings in which the scenario departs from the embedded one of its name.
@@ -122,18 +121,18 @@ impl ViewContext {
     /// A context at the beginning of a run.
     #[must_use]
     pub fn new(
-        bench: &'static dyn Bench,
+        experiment: &'static dyn AnyExperiment,
         folder: String,
         mode: Mode,
         look: Look,
         keys: KeyMap,
     ) -> Self {
-        let changed = departures(bench.scenario());
+        let changed = departures(experiment.scenario());
         Self {
-            bench,
+            experiment,
             folder,
             changed: changed.iter().map(ToString::to_string).collect(),
-            player: RolloutPlayer::new(bench),
+            player: RolloutPlayer::new(experiment),
             mode,
             look,
             keys,
@@ -160,19 +159,19 @@ impl ViewContext {
     /// The scenario.
     #[must_use]
     pub fn scenario(&self) -> &'static Scenario {
-        self.bench.scenario()
+        self.experiment.scenario()
     }
 
     /// The world's subtasks.
     #[must_use]
     pub fn catalogue(&self) -> &'static Catalogue {
-        self.bench.catalogue()
+        self.experiment.catalogue()
     }
 
     /// What there is to see of the world.
     #[must_use]
     pub fn scenery(&self) -> &'static Scenery {
-        self.bench.scenery()
+        self.experiment.scenery()
     }
 
     /// The run as it is, whatever is shown.

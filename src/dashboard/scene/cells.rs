@@ -8,7 +8,7 @@ use super::lattice::Lattice;
 use super::marks::{Scene, agent, sign};
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::{Look, Paint, put, width};
-use crate::lab::specimen::{PolicyCell, PolicyMap};
+use crate::lab::inspection::{PolicyCell, PolicyMap};
 use crate::worlds::SubtaskId;
 use crate::worlds::scene::{Role, Scenery};
 

@@ -3,7 +3,7 @@
 use ratatui::style::{Modifier, Style};
 
 use crate::dashboard::look::{Look, Paint};
-use crate::lab::specimen::PolicyMap;
+use crate::lab::inspection::PolicyMap;
 use crate::worlds::scene::{Mark, Role, Scenery, Snapshot};
 
 /// What is drawn besides the scenery.

@@ -8,7 +8,7 @@ use std::thread;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use crate::evolution::EvolutionState;
-use crate::lab::specimen::Archive;
+use crate::lab::inspection::Archive;
 
 /// The population after a generation, or why it cannot be had.
 #[derive(Debug)]

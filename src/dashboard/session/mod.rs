@@ -27,8 +27,8 @@ use super::app::App;
 use super::context::{Effect, Input, Mouse, ViewContext};
 use super::keys::Key;
 use super::terminal::{Job, Terminal};
-use crate::lab::specimen::{Archive, bench};
-use crate::lab::{Life, Manifest, News};
+use crate::lab::inspection::Archive;
+use crate::lab::{Life, Manifest, News, lasting_experiment};
 use loader::{Loaded, Loader};
 use wait::{WakeUp, wait};
 
@@ -193,17 +193,19 @@ impl<'s> Session<'s> {
     /// is taken in again.
     fn turn_to(&mut self, manifest: Manifest) {
         let context = self.app.context();
-        if (&manifest.scenario, manifest.seed) == (context.bench.scenario(), context.bench.seed()) {
+        if (&manifest.scenario, manifest.seed)
+            == (context.experiment.scenario(), context.experiment.seed())
+        {
             return;
         }
         let (look, keys) = (context.look.clone(), context.keys.clone());
         let (mode, folder, within) = (context.mode, context.folder.clone(), context.within);
-        let turned = bench(manifest.scenario, manifest.seed)
+        let turned = lasting_experiment(manifest.scenario, manifest.seed)
             .map_err(|error| error.to_string())
-            .and_then(|bench| {
-                let archive = Archive::new(bench, self.folder, None);
+            .and_then(|experiment| {
+                let archive = Archive::new(experiment, self.folder, None);
                 self.loader = Loader::start(archive).map_err(|error| error.to_string())?;
-                Ok(App::new(ViewContext::new(bench, folder, mode, look, keys)).within(within))
+                Ok(App::new(ViewContext::new(experiment, folder, mode, look, keys)).within(within))
             });
         match turned {
             Ok(app) => {

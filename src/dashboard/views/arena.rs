@@ -9,7 +9,7 @@ use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Look, Paint, fitted, put, width, wrapped};
 use crate::dashboard::scene::{Scene, draw_scene};
-use crate::lab::specimen::Rollout;
+use crate::lab::inspection::Rollout;
 use crate::worlds::StateType;
 use crate::worlds::scene::Snapshot;
 
@@ -105,7 +105,7 @@ fn trail(rollout: &dyn Rollout) -> Vec<[f64; 2]> {
 /// Rows that the state takes: as many as that with the longest name, so that the arena keeps
 /// its size.
 fn state_rows(context: &ViewContext, area: Rect) -> u16 {
-    let variants = context.bench.variants();
+    let variants = context.experiment.variants();
     let cases: Vec<_> = match context.scenery().grid.is_some() && variants.len() > 1 {
         true => variants.iter().map(|case| Some(case.as_str())).collect(),
         false => vec![None],

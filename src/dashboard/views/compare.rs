@@ -16,7 +16,7 @@ use crate::dashboard::look::{Paint, fitted, put, width, wrapped};
 use crate::dashboard::view_id::ViewId;
 use crate::evolution::RankedRecord;
 use crate::hierarchy::{Tree, draw, structural_difference, to_dot};
-use crate::lab::specimen::Specimen;
+use crate::lab::inspection::InspectedIndividual;
 use crate::learning::SelectionProbabilities;
 use crate::worlds::SubtaskId;
 
@@ -346,15 +346,15 @@ impl View for Compare {
         if fresh {
             return;
         }
-        let specimens = ids.map(|id| Specimen::with_id(state, id));
-        let [Some(one), Some(other)] = specimens else {
+        let individuals = ids.map(|id| InspectedIndividual::with_id(state, id));
+        let [Some(one), Some(other)] = individuals else {
             self.selection = None;
             return;
         };
         self.selection = Some(Selections {
             generation: state.generation,
             ids,
-            of: [one, other].map(|specimen| context.bench.selection(specimen)),
+            of: [one, other].map(|individual| context.experiment.selection(individual)),
         });
     }
 

@@ -18,7 +18,7 @@ use crate::dashboard::look::lines::{Pen, draw_lines, number, percent};
 use crate::dashboard::look::{Canvas, Layer, Paint};
 use crate::dashboard::scene::share;
 use crate::dashboard::scene::{Scene, draw_mark, draw_scene, in_proportion};
-use crate::lab::specimen::{MapView, PolicyCell, PolicyMap};
+use crate::lab::inspection::{MapView, PolicyCell, PolicyMap};
 
 /// Headings that keys go through.
 const HEADINGS: usize = 24;
@@ -137,7 +137,7 @@ impl Map {
             );
             lines.push(with_keys(context, &text, &keys(Action::Left)));
         }
-        let variants = context.bench.variants();
+        let variants = context.experiment.variants();
         if let Some(variant) = variants.get(self.variant) {
             lines.push(with_keys(context, variant, &keys(Action::Up)));
         }
@@ -300,7 +300,7 @@ impl View for Map {
     }
 
     fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
-        let variants = context.bench.variants().len().max(1);
+        let variants = context.experiment.variants().len().max(1);
         match action {
             Action::Left => self.heading = (self.heading + 1) % HEADINGS,
             Action::Right => self.heading = (self.heading + HEADINGS - 1) % HEADINGS,
@@ -313,7 +313,7 @@ impl View for Map {
     }
 
     fn prepare(&mut self, context: &ViewContext) {
-        let Some((specimen, subject)) = context.player.specimen().zip(context.player.subject())
+        let Some((individual, subject)) = context.player.individual().zip(context.player.subject())
         else {
             self.made = None;
             return;
@@ -331,7 +331,7 @@ impl View for Map {
         };
         let made = self.made.as_ref();
         if made.is_none_or(|made| made.subject != subject || made.map.view != view) {
-            let map = context.bench.policy_map(specimen, view);
+            let map = context.experiment.policy_map(individual, view);
             self.made = Some(Made { subject, map });
         }
     }

@@ -76,7 +76,7 @@ pub(super) fn nothing_yet(context: &ViewContext, area: Rect, buffer: &mut Buffer
 pub(super) fn case<'d>(context: &'d ViewContext, snapshot: &Snapshot) -> Option<&'d str> {
     context.scenery().grid?;
     let is_done = snapshot.state_type == context.catalogue().terminal();
-    let variants = context.bench.variants();
+    let variants = context.experiment.variants();
     let case = variants.get(snapshot.variant).filter(|_| !is_done);
     case.filter(|_| variants.len() > 1).map(String::as_str)
 }

@@ -98,7 +98,7 @@ fn facts(context: &ViewContext, room: usize) -> Vec<Fact> {
     facts.extend([
         ("checkpoint", saved, Paint::Text),
         ("scenario", scenario.name.clone(), Paint::Text),
-        ("seed", context.bench.seed().to_string(), Paint::Text),
+        ("seed", context.experiment.seed().to_string(), Paint::Text),
         ("population", survivors, Paint::Text),
         ("trials", trials, Paint::Text),
         ("folder", context.folder.clone(), Paint::Text),

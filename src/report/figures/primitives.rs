@@ -4,11 +4,10 @@
 use std::path::Path;
 
 use super::{Chart, Series};
-use crate::evolution::Experiment;
-use crate::lab::{Checkpoint, CheckpointError, SetupError, WorldTask, with_world};
+use crate::lab::{AnyExperiment, Checkpoint, CheckpointError, SetupError, experiment};
 use crate::learning::PrimitiveValues;
 use crate::scenario::Scenario;
-use crate::worlds::{Kind, Probe, World};
+use crate::worlds::{Kind, Probe};
 
 /// Points of a line.
 const POINTS: usize = 121;
@@ -21,39 +20,32 @@ pub(super) fn action_values(
     scenario: &Scenario,
     folder: &Path,
 ) -> Result<Result<Vec<Chart>, String>, SetupError> {
-    with_world(scenario.clone(), OfCheckpoint(folder))
+    let experiment = experiment(scenario.clone(), 0)?;
+    Ok(charts(&*experiment, folder))
 }
 
-struct OfCheckpoint<'f>(&'f Path);
-
-impl WorldTask for OfCheckpoint<'_> {
-    type Output = Result<Vec<Chart>, String>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let wrong = |error: CheckpointError| format!("checkpoint.json: {error}");
-        let checkpoint = Checkpoint::read(&self.0.join("checkpoint.json")).map_err(wrong)?;
-        let checkpoint = checkpoint.ok_or("holds no checkpoint.json")?;
-        let state = checkpoint.state(&experiment).map_err(wrong)?;
-        let charts = state
-            .primitives
-            .all()
-            .iter()
-            .filter_map(|primitive| chart(&experiment, primitive));
-        Ok(charts.collect())
-    }
+fn charts(experiment: &dyn AnyExperiment, folder: &Path) -> Result<Vec<Chart>, String> {
+    let wrong = |error: CheckpointError| format!("checkpoint.json: {error}");
+    let checkpoint = Checkpoint::read(&folder.join("checkpoint.json")).map_err(wrong)?;
+    let checkpoint = checkpoint.ok_or("holds no checkpoint.json")?;
+    let state = experiment.population(&checkpoint).map_err(wrong)?;
+    let primitives = state.primitives.all().iter();
+    Ok(primitives
+        .filter_map(|primitive| chart(experiment, primitive))
+        .collect())
 }
 
-fn chart<W: World>(experiment: &Experiment<W>, primitive: &PrimitiveValues) -> Option<Chart> {
+fn chart(experiment: &dyn AnyExperiment, primitive: &PrimitiveValues) -> Option<Chart> {
     let catalogue = experiment.catalogue();
     let subtask = catalogue.subtask(primitive.subtask);
     let [axis] = catalogue.maps[subtask.map.index()].axes() else {
         return None;
     };
-    let probes = experiment.world.probes(primitive.subtask);
+    let probes = experiment.probes(primitive.subtask);
     let (first, last) = (probes.first()?, probes.last()?);
     let (name, _) = first.readings.first()?;
-    let input = |probe: &Probe<W::Percept>| probe.percept.as_ref().get(axis.input).copied();
-    let reading = |probe: &Probe<W::Percept>| probe.readings.first().map(|(_, value)| *value);
+    let input = |probe: &Probe<Vec<f32>>| probe.percept.get(axis.input).copied();
+    let reading = |probe: &Probe<Vec<f32>>| probe.readings.first().map(|(_, value)| *value);
     let [from, to] = [
         (input(first)?, reading(first)?),
         (input(last)?, reading(last)?),
@@ -62,12 +54,12 @@ fn chart<W: World>(experiment: &Experiment<W>, primitive: &PrimitiveValues) -> O
         return None;
     };
     let mut lines = vec![Vec::with_capacity(POINTS); actions.len()];
-    let mut percept = first.percept.as_ref().to_vec();
+    let mut percept = first.percept.clone();
     for point in 0..POINTS {
         let share = point as f64 / (POINTS - 1) as f64;
         percept[axis.input] = from.0 + (to.0 - from.0) * share as f32;
         let x = from.1 + (to.1 - from.1) * share;
-        let values = primitive.action_values(&experiment.encoder, &percept);
+        let values = primitive.action_values(experiment.encoder(), &percept);
         for (line, value) in lines.iter_mut().zip(values) {
             line.push((x, f64::from(value)));
         }

@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::primitives::action_values;
 use super::{Chart, Figure, FigureNumber, Panel, Series, Sketch};
-use crate::evolution::{Experiment, GenerationRecord, read_tree};
+use crate::evolution::GenerationRecord;
 use crate::lab::{
-    Event, Recording, RunError, SetupError, WorldTask, departures, in_words, shell_word,
-    with_changes, with_world,
+    Event, Recording, RunError, SetupError, departures, experiment, in_words, shell_word,
+    with_changes,
 };
 use crate::scenario::Scenario;
-use crate::worlds::World;
 
 /// Hierarchies in Figure 4.9.
 const SELECTED_GENERATIONS: usize = 8;
@@ -250,7 +249,7 @@ impl RunSource {
             Some((caption, best.tree.clone()))
         };
         let trees = generations.iter().filter_map(best).collect();
-        let sketches = with_world(self.scenario.clone(), Sketches(trees))?;
+        let sketches = sketches(&self.scenario, trees)?;
         let sketches = sketches.map_err(|message| self.misfit(message))?;
         Ok(sketches.into_iter().map(Panel::Tree).collect())
     }
@@ -269,19 +268,19 @@ impl RunSource {
     }
 }
 
-/// Captions and texts of hierarchies, to be laid out.
-pub(super) struct Sketches(pub(super) Vec<(String, String)>);
-
-impl WorldTask for Sketches {
-    type Output = Result<Vec<Sketch>, String>;
-
-    fn carry_out<W: World + 'static>(self, experiment: Experiment<W>) -> Self::Output {
-        let catalogue = experiment.catalogue();
-        let depth = experiment.scenario.evolution.maximum_depth;
-        let sketches = self.0.into_iter().map(|(caption, text)| {
-            let tree = read_tree(&text, catalogue, depth).map_err(|error| error.to_string())?;
-            Ok(Sketch::of(caption, &tree, catalogue))
-        });
-        sketches.collect()
-    }
+/// Lays hierarchies out, given as captions and texts.
+///
+/// # Errors
+/// When the scenario cannot be made ready; within, when a text is no hierarchy.
+pub(super) fn sketches(
+    scenario: &Scenario,
+    trees: Vec<(String, String)>,
+) -> Result<Result<Vec<Sketch>, String>, SetupError> {
+    let experiment = experiment(scenario.clone(), 0)?;
+    let sketches = trees.into_iter().map(|(caption, text)| {
+        let tree = experiment.read_tree(&text);
+        let tree = tree.map_err(|error| error.to_string())?;
+        Ok(Sketch::of(caption, &tree, experiment.catalogue()))
+    });
+    Ok(sketches.collect())
 }

@@ -1,9 +1,8 @@
 //! The figures of a study: courses over all seeds, and a typical run where the thesis
 //! shows one.
 
-use super::run::{RunSource, Sketches, SourceError};
+use super::run::{RunSource, SourceError, sketches};
 use super::{Chart, Figure, FigureNumber, Panel, Series};
-use crate::lab::with_world;
 use crate::report::arm::Base;
 use crate::report::facts::{Facts, Moment};
 use crate::report::provenance::Provenance;
@@ -147,8 +146,7 @@ impl View<'_> {
             let Some(most) = most else { continue };
             let caption = format!("{}: {} of {} runs", scenario.name, times(most), runs.len());
             let trees = vec![(caption, most.winner.structure.clone())];
-            let sketches = with_world(scenario.clone(), Sketches(trees))?;
-            let sketches = sketches.map_err(|message| SourceError::Misfit {
+            let sketches = sketches(scenario, trees)?.map_err(|message| SourceError::Misfit {
                 folder: self.study.name(&most.run),
                 message,
             })?;

@@ -8,7 +8,7 @@ use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::lines::Pen;
 use crate::dashboard::look::{Paint, one_line, wrapped};
 use crate::evolution::Origin;
-use crate::lab::specimen::{Ancestor, Lineage};
+use crate::lab::inspection::{Ancestor, Lineage};
 
 /// The line along which the tree was handed down, the individual first.
 ///

@@ -6,7 +6,7 @@ use ratatui::layout::Rect;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::lines::{TINY, number};
 use crate::dashboard::look::{Canvas, Layer, Paint, put, shortened, width, wrapped};
-use crate::lab::specimen::{Profile, Quantity};
+use crate::lab::inspection::{Profile, Quantity};
 use crate::worlds::scene::Scale;
 
 /// Columns of the numbers beside a chart.

@@ -19,7 +19,7 @@ use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, last_start, number};
 use crate::dashboard::look::{Paint, put, width};
 use crate::hierarchy::{draw, to_dot};
-use crate::lab::specimen::{Lineage, Profile, lineage};
+use crate::lab::inspection::{Lineage, Profile, lineage};
 use crate::learning::SelectionProbabilities;
 use values::Shelf;
 
@@ -86,10 +86,10 @@ struct Known {
 impl Inspector {
     fn tree_lines(&self, context: &ViewContext) -> Vec<Line<'static>> {
         let look = &context.look;
-        let Some(specimen) = context.player.specimen() else {
+        let Some(individual) = context.player.individual() else {
             return Vec::new();
         };
-        let hierarchy = &specimen.individual.hierarchy;
+        let hierarchy = &individual.individual.hierarchy;
         let drawn = draw(hierarchy.tree(), context.catalogue(), look.signs.tree);
         let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 1;
         let visits = context
@@ -325,12 +325,12 @@ impl View for Inspector {
     }
 
     fn prepare(&mut self, context: &ViewContext) {
-        let Some((specimen, subject)) = context.player.specimen().zip(context.player.subject())
+        let Some((individual, subject)) = context.player.individual().zip(context.player.subject())
         else {
             self.known = None;
             return;
         };
-        let node = context.node_in(specimen.individual.hierarchy.tree());
+        let node = context.node_in(individual.individual.hierarchy.tree());
         let lines = self
             .page_lines(context, self.page, context.size.0.into())
             .len();
@@ -339,7 +339,7 @@ impl View for Inspector {
         if same.is_some_and(|known| known.node == node) {
             return;
         }
-        let profiles = context.bench.profiles(specimen, node);
+        let profiles = context.experiment.profiles(individual, node);
         self.shelf.fit(&profiles);
         if let Some(known) = self.known.as_mut().filter(|known| known.subject == subject) {
             known.profiles = profiles;
@@ -354,7 +354,7 @@ impl View for Inspector {
             subject,
             node,
             profiles,
-            selection: context.bench.selection(specimen),
+            selection: context.experiment.selection(individual),
             lineage: lineage(until.map(|record| &**record), subject.id),
         });
     }

@@ -11,7 +11,7 @@ use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, decimals, draw_lines, fixed};
 use crate::dashboard::look::{Paint, put, shortened, wrapped};
-use crate::lab::specimen::{Profile, Quantity};
+use crate::lab::inspection::{Profile, Quantity};
 use crate::worlds::scene::Scale;
 
 /// Which of the profiles is looked at: a quantity, and a place among the profiles that

@@ -6,7 +6,7 @@ use super::Shown;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::Paint;
 use crate::dashboard::look::lines::{Pen, number};
-use crate::lab::specimen::StepTrace;
+use crate::lab::inspection::StepTrace;
 
 /// Lines of the recorded steps before the one that is `back` steps back, as many as
 /// `rows`, the latest first.

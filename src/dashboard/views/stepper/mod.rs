@@ -19,7 +19,7 @@ use crate::dashboard::look::lines::{Pen, draw_lines, last_start};
 use crate::dashboard::look::{Look, Paint, fitted, put};
 use crate::dashboard::scene::{Scene, draw_scene};
 use crate::hierarchy::{Tree, to_dot};
-use crate::lab::specimen::StepTrace;
+use crate::lab::inspection::StepTrace;
 use crate::worlds::{Catalogue, Kind};
 
 /// One time step of the rollout, from the root's choice to the last update.

@@ -50,7 +50,7 @@ pub struct Profile {
 
 /// All profiles of a node: for every state type that it can act in, every sweep and
 /// every quantity.
-pub(super) fn profiles<W: Scenic>(
+pub(in crate::lab) fn profiles<W: Scenic>(
     world: &W,
     tree: &Tree,
     node: usize,

@@ -2,8 +2,6 @@
 
 use thiserror::Error;
 
-use super::Bench;
-
 /// A state in which the trials of a rollout begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
@@ -11,7 +9,7 @@ pub struct Start {
     pub at: [f64; 2],
     /// Its heading in radians; of no account where agents have none.
     pub heading: f64,
-    /// Index of one of the bench's variants.
+    /// Index of one of the experiment's variants.
     pub variant: usize,
 }
 
@@ -33,34 +31,19 @@ pub struct StartError {
 }
 
 impl Start {
-    /// Reads `from R to B at 0,3` or `carrying at 500,1200 heading 90`: one of the
-    /// bench's variants, the agent's place, and its heading in degrees.
-    ///
-    /// # Errors
-    /// When it is none, or the agent cannot be there.
-    pub fn read(text: &str, bench: &dyn Bench) -> Result<Self, StartError> {
-        let start = parse(text, bench.variants()).filter(|start| bench.can_begin(*start));
-        let scenery = bench.scenery();
-        let [width, height] = scenery.extent;
-        start.ok_or_else(|| StartError {
-            found: text.to_owned(),
-            unit: scenery.unit.clone(),
-            extent: format!("{width},{height}"),
-            cases: bench.variants().join(", "),
+    /// Reads `VARIANT at X,Y` or `VARIANT at X,Y heading DEGREES`; whether the agent can be
+    /// there is not checked.
+    pub(in crate::lab) fn parse(text: &str, variants: &[String]) -> Option<Self> {
+        let (case, rest) = text.split_once(" at ")?;
+        let (place, degrees) = rest.split_once(" heading ").unwrap_or((rest, "0"));
+        let (x, y) = place.split_once(',')?;
+        let number = |text: &str| text.trim().parse().ok().filter(|n: &f64| n.is_finite());
+        Some(Self {
+            at: [number(x)?, number(y)?],
+            heading: number(degrees)?.to_radians(),
+            variant: variants.iter().position(|variant| variant == case.trim())?,
         })
     }
-}
-
-fn parse(text: &str, variants: &[String]) -> Option<Start> {
-    let (case, rest) = text.split_once(" at ")?;
-    let (place, degrees) = rest.split_once(" heading ").unwrap_or((rest, "0"));
-    let (x, y) = place.split_once(',')?;
-    let number = |text: &str| text.trim().parse().ok().filter(|n: &f64| n.is_finite());
-    Some(Start {
-        at: [number(x)?, number(y)?],
-        heading: number(degrees)?.to_radians(),
-        variant: variants.iter().position(|variant| variant == case.trim())?,
-    })
 }
 
 #[cfg(test)]
@@ -70,7 +53,7 @@ mod tests {
     #[test]
     fn a_case_a_place_and_a_heading() {
         let variants = ["empty-handed", "carrying"].map(String::from);
-        let read = |text| parse(text, &variants);
+        let read = |text| Start::parse(text, &variants);
         let start = read("carrying at 500,1200.5 heading 180").unwrap();
         assert_eq!((start.at, start.variant), ([500.0, 1200.5], 1));
         assert_eq!(start.heading, std::f64::consts::PI);

@@ -14,10 +14,12 @@ use std::path::Path;
 
 use common::{run_in, short, threads};
 use maxq_lab::evolution::{GenerationRecord, Origin};
-use maxq_lab::lab::specimen::{
-    Archive, ArchiveError, Bench, MapView, Quantity, Specimen, bench, lineage,
+use maxq_lab::lab::inspection::{
+    Archive, ArchiveError, InspectedIndividual, MapView, Quantity, lineage,
 };
-use maxq_lab::lab::{Event, Keep, RunOptions, read_events, start};
+use maxq_lab::lab::{
+    AnyExperiment, Event, Keep, RunOptions, lasting_experiment, read_events, start,
+};
 use maxq_lab::scenario::Scenario;
 
 const SEED: u64 = 3;
@@ -25,7 +27,7 @@ const SEED: u64 = 3;
 /// A finished run.
 struct Finished {
     folder: tempfile::TempDir,
-    bench: &'static dyn Bench,
+    experiment: &'static dyn AnyExperiment,
     records: Vec<GenerationRecord>,
 }
 
@@ -42,7 +44,7 @@ impl Finished {
         });
         Self {
             records: records.collect(),
-            bench: bench(scenario, SEED).unwrap(),
+            experiment: lasting_experiment(scenario, SEED).unwrap(),
             folder,
         }
     }
@@ -52,7 +54,7 @@ impl Finished {
     }
 
     fn archive(&self) -> Archive {
-        Archive::new(self.bench, &self.path(), None)
+        Archive::new(self.experiment, &self.path(), None)
     }
 }
 
@@ -64,9 +66,9 @@ fn finished() -> Finished {
 fn a_rollout_is_the_same_however_it_is_watched() {
     let run = finished();
     let state = run.archive().latest().unwrap();
-    let specimen = Specimen::at(&state, 0).unwrap();
-    let mut stepped = run.bench.rollout(specimen, 0, None);
-    let mut advanced = run.bench.rollout(specimen, 0, None);
+    let individual = InspectedIndividual::at(&state, 0).unwrap();
+    let mut stepped = run.experiment.rollout(individual, 0, None);
+    let mut advanced = run.experiment.rollout(individual, 0, None);
     let mut taken = 0;
     for stride in [1, 1, 2, 7, 60, 300, 1, 500] {
         advanced.advance(stride);
@@ -94,8 +96,13 @@ fn a_rollout_is_the_same_however_it_is_watched() {
 fn rollouts_have_streams_of_their_own() {
     let run = finished();
     let state = run.archive().latest().unwrap();
-    let specimen = Specimen::at(&state, 0).unwrap();
-    let start = |number| run.bench.rollout(specimen, number, None).snapshot().at;
+    let individual = InspectedIndividual::at(&state, 0).unwrap();
+    let start = |number| {
+        run.experiment
+            .rollout(individual, number, None)
+            .snapshot()
+            .at
+    };
     assert_eq!(start(0), start(0));
     assert_ne!(start(0), start(1));
 }
@@ -104,8 +111,8 @@ fn rollouts_have_streams_of_their_own() {
 fn a_trial_that_is_over_stays_until_the_next_step() {
     let run = finished();
     let state = run.archive().latest().unwrap();
-    let specimen = Specimen::at(&state, 0).unwrap();
-    let mut rollout = run.bench.rollout(specimen, 0, None);
+    let individual = InspectedIndividual::at(&state, 0).unwrap();
+    let mut rollout = run.experiment.rollout(individual, 0, None);
     let last = loop {
         let trace = rollout.step().unwrap();
         if trace.ended.is_some() {
@@ -127,16 +134,19 @@ fn selection_probabilities_are_those_of_the_record() {
     let state = archive.generation(record.generation).unwrap();
     let better = state.individuals.len() / 2;
     let all: Vec<_> = (0..better)
-        .map(|index| run.bench.selection(Specimen::at(&state, index).unwrap()))
+        .map(|index| {
+            run.experiment
+                .selection(InspectedIndividual::at(&state, index).unwrap())
+        })
         .collect();
-    let names: Vec<_> = run.bench.catalogue().primitives().collect();
+    let names: Vec<_> = run.experiment.catalogue().primitives().collect();
     for (state_type, recorded) in record.selection_probabilities.iter().enumerate() {
         for (place, primitive) in names.iter().enumerate() {
             let sum: f64 = all
                 .iter()
                 .map(|own| own[state_type].as_ref().unwrap()[place])
                 .sum();
-            let name = primitive.name(run.bench.catalogue());
+            let name = primitive.name(run.experiment.catalogue());
             let recorded = recorded.as_ref().unwrap()[name];
             assert_eq!(
                 (sum / better as f64).to_bits(),
@@ -157,15 +167,15 @@ fn maps_repeat_and_know_where_nobody_can_be() {
         Keep::None,
     );
     let state = run.archive().latest().unwrap();
-    let specimen = Specimen::at(&state, 0).unwrap();
+    let individual = InspectedIndividual::at(&state, 0).unwrap();
     let view = MapView {
         heading: 0.7,
         variant: 1,
         columns: 31,
         rows: 23,
     };
-    let map = run.bench.policy_map(specimen, view);
-    assert_eq!(map, run.bench.policy_map(specimen, view));
+    let map = run.experiment.policy_map(individual, view);
+    assert_eq!(map, run.experiment.policy_map(individual, view));
     assert_eq!(map.cells.len(), 31 * 23);
     // A robot of radius 75 has no room within 75 of the outer walls.
     assert!((0..31).all(|column| map.cell(column, 0).is_none()));
@@ -184,7 +194,7 @@ fn maps_repeat_and_know_where_nobody_can_be() {
     let empty_handed = MapView { variant: 0, ..view };
     assert_ne!(
         map.cells,
-        run.bench.policy_map(specimen, empty_handed).cells
+        run.experiment.policy_map(individual, empty_handed).cells
     );
     let [low, high] = map.values().unwrap();
     assert!(low < high);
@@ -197,10 +207,10 @@ fn maps_repeat_and_know_where_nobody_can_be() {
 fn profiles_cover_every_node_that_can_act() {
     let run = finished();
     let state = run.archive().latest().unwrap();
-    let specimen = Specimen::at(&state, 0).unwrap();
-    let tree = specimen.individual.hierarchy.tree();
+    let individual = InspectedIndividual::at(&state, 0).unwrap();
+    let tree = individual.individual.hierarchy.tree();
     for node in 0..tree.nodes().len() {
-        let profiles = run.bench.profiles(specimen, node);
+        let profiles = run.experiment.profiles(individual, node);
         assert!(!profiles.is_empty(), "node {node}");
         for profile in &profiles {
             let rows = profile.down.as_ref().map_or(1, |down| down.len());
@@ -220,7 +230,11 @@ fn profiles_cover_every_node_that_can_act() {
             }
         }
     }
-    assert!(run.bench.profiles(specimen, tree.nodes().len()).is_empty());
+    assert!(
+        run.experiment
+            .profiles(individual, tree.nodes().len())
+            .is_empty()
+    );
 }
 
 #[test]
@@ -262,7 +276,7 @@ fn a_generation_that_was_not_kept_is_a_clear_error() {
 fn files_of_another_run_and_damaged_ones_are_errors_that_name_them() {
     let run = finished();
     let kept = run.path().join("generations").join("000002.json");
-    let other = bench(short(&[]), SEED + 1).unwrap();
+    let other = lasting_experiment(short(&[]), SEED + 1).unwrap();
     let mut archive = Archive::new(other, &run.path(), None);
     let error = archive.generation(2).unwrap_err();
     assert!(matches!(error, ArchiveError::Foreign { .. }), "{error}");
@@ -276,7 +290,7 @@ fn files_of_another_run_and_damaged_ones_are_errors_that_name_them() {
     let error = run.archive().generation(2).unwrap_err();
     assert!(error.to_string().contains("000002.json: crc32"), "{error}");
     let empty = tempfile::tempdir().unwrap();
-    let nothing = Archive::new(run.bench, Path::new(empty.path()), None);
+    let nothing = Archive::new(run.experiment, Path::new(empty.path()), None);
     assert!(matches!(
         nothing.latest(),
         Err(ArchiveError::Nothing { .. })
@@ -289,8 +303,12 @@ fn a_live_run_shows_its_latest_population_without_the_disk() {
     let path = folder.path().join("run");
     let scenario = short(&[]);
     let run = start(scenario.clone(), SEED, &path, &threads(1)).unwrap();
-    let bench = bench(scenario, SEED).unwrap();
-    let archive = Archive::new(bench, Path::new("/nowhere"), Some(run.controls.clone()));
+    let experiment = lasting_experiment(scenario, SEED).unwrap();
+    let archive = Archive::new(
+        experiment,
+        Path::new("/nowhere"),
+        Some(run.controls.clone()),
+    );
     let seen = run.events.iter().find_map(|event| match event {
         Event::Generation(record) if record.generation == 2 => Some(record.generation),
         _ => None,
@@ -329,10 +347,10 @@ fn looking_at_individuals_leaves_the_run_as_it_is() {
     let before = common::Record::of(&run.path());
     let state = run.archive().latest().unwrap();
     let copy = (*state).clone();
-    let specimen = Specimen::at(&state, 1).unwrap();
-    run.bench.rollout(specimen, 5, None).advance(1000);
-    let _ = run.bench.selection(specimen);
-    let _ = run.bench.profiles(specimen, 0);
+    let individual = InspectedIndividual::at(&state, 1).unwrap();
+    run.experiment.rollout(individual, 5, None).advance(1000);
+    let _ = run.experiment.selection(individual);
+    let _ = run.experiment.profiles(individual, 0);
     assert!(*state == copy);
     common::Record::of(&run.path()).assert_same(&before, "after looking");
 }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::policy_map::{MapView, PolicyMap, policy_map};
-use super::{Specimen, Start};
+use super::{InspectedIndividual, Start};
 use crate::evolution::{Experiment, TrialRecord};
 use crate::learning::{Agent, Explanation, Observer, Trial};
 use crate::random::Stream;
@@ -111,7 +111,7 @@ impl<W: Scenic> Observer<W> for Follower<'_> {
 }
 
 /// A rollout in a world.
-pub(super) struct WorldRollout<W: Scenic + 'static> {
+pub(in crate::lab) struct WorldRollout<W: Scenic + 'static> {
     experiment: &'static Experiment<W>,
     agent: Agent<'static, W>,
     trial: Trial<W::State>,
@@ -122,15 +122,15 @@ pub(super) struct WorldRollout<W: Scenic + 'static> {
 }
 
 impl<W: Scenic> WorldRollout<W> {
-    pub(super) fn new(
+    pub(in crate::lab) fn new(
         experiment: &'static Experiment<W>,
-        specimen: Specimen<'_>,
+        individual: InspectedIndividual<'_>,
         start: Option<Start>,
         mut rng: Stream,
     ) -> Self {
-        let hierarchy = specimen.individual.hierarchy.clone();
+        let hierarchy = individual.individual.hierarchy.clone();
         let composite: Vec<_> = hierarchy.values().iter().map(Option::is_some).collect();
-        let mut agent = experiment.agent(hierarchy, specimen.primitives.clone());
+        let mut agent = experiment.agent(hierarchy, individual.primitives.clone());
         let trial = begin(&experiment.world, &mut agent, start, &mut rng);
         let mut rollout = Self {
             status: RolloutStatus {

@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::Bench;
 use crate::evolution::EvolutionState;
 use crate::lab::checkpoint::Checkpoint;
 use crate::lab::checkpoint_error::CheckpointError;
 use crate::lab::controls::Controls;
+use crate::lab::experiment::AnyExperiment;
 
 /// Populations that are held ready.
 const CAPACITY: usize = 8;
@@ -56,7 +56,7 @@ pub enum ArchiveError {
 
 /// The populations of one run, read when they are asked for.
 pub struct Archive {
-    bench: &'static dyn Bench,
+    experiment: &'static dyn AnyExperiment,
     folder: PathBuf,
     live: Option<Controls>,
     /// The latest used first.
@@ -67,9 +67,13 @@ impl Archive {
     /// The archive of the run in `folder`; of a run in this process if its controls are
     /// given.
     #[must_use]
-    pub fn new(bench: &'static dyn Bench, folder: &Path, live: Option<Controls>) -> Self {
+    pub fn new(
+        experiment: &'static dyn AnyExperiment,
+        folder: &Path,
+        live: Option<Controls>,
+    ) -> Self {
         Self {
-            bench,
+            experiment,
             folder: folder.to_owned(),
             live,
             cache: VecDeque::new(),
@@ -140,12 +144,15 @@ impl Archive {
             return Ok(None);
         };
         checkpoint
-            .check_origin(self.bench.scenario(), self.bench.seed())
+            .check_origin(self.experiment.scenario(), self.experiment.seed())
             .map_err(|message| ArchiveError::Foreign {
                 file: file.clone(),
                 message,
             })?;
-        self.bench.population(&checkpoint).map(Some).map_err(wrong)
+        self.experiment
+            .population(&checkpoint)
+            .map(Some)
+            .map_err(wrong)
     }
 }
 

@@ -13,7 +13,7 @@ const SAMPLES: usize = 4;
 pub struct MapView {
     /// Heading of the agent in radians.
     pub heading: f64,
-    /// Index of one of the bench's variants.
+    /// Index of one of the experiment's variants.
     pub variant: usize,
     /// Cells along x.
     pub columns: usize,
@@ -69,7 +69,7 @@ impl PolicyMap {
     }
 }
 
-pub(super) fn policy_map<W: Scenic>(
+pub(in crate::lab) fn policy_map<W: Scenic>(
     world: &W,
     policy: &mut Policy<'_>,
     view: MapView,
