@@ -27,6 +27,12 @@
 
 #![deny(missing_docs)]
 
+#[cfg(not(unix))]
+compile_error!(
+    "maxq-lab runs on Unix systems only (Linux, macOS, BSD): it relies on their signals, \
+     process groups and terminals"
+);
+
 pub mod cli;
 pub mod dashboard;
 pub mod evolution;

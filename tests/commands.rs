@@ -1,8 +1,8 @@
-//! The commands: results on standard output, as JSON of the promised fields where that is
-//! asked for, messages on standard error; and pause and stop that act at once.
+//! The commands: results on standard output, as JSON with the promised fields on request;
+//! messages on standard error; pause and stop that take effect at once.
 //!
-//! Why it matters: scripts read these fields, pipes close early, and a person who stops a
-//! run does not want to wait for the end of a generation.
+//! Why it matters: scripts read these fields, pipes close early, and a user who stops a run
+//! does not want to wait for the end of a generation.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -38,7 +38,7 @@ const COMMANDS: &[&[&str]] = &[
     &["study", "status"],
     &["study", "watch"],
     &["study", "report"],
-    &["study", "plan"],
+    &["study", "commands"],
     &["study", "slurm"],
     &["study", "merge"],
     &["export"],
@@ -55,7 +55,7 @@ const COMMANDS: &[&[&str]] = &[
     &["manual"],
 ];
 
-/// Runs a command that must succeed and say nothing on standard error.
+/// Runs a command that must succeed with an empty standard error.
 fn succeeds(command: &mut Command) -> String {
     let output = output(command);
     assert_eq!(
@@ -151,7 +151,7 @@ fn evaluate_reports_every_repeat() {
         "5",
         "--warmup",
         "1",
-        "--banks",
+        "--primitive-sets",
         "2",
     ];
     command
@@ -197,7 +197,7 @@ fn evaluate_reports_every_repeat() {
     assert!((result["mean"].as_f64().unwrap() - mean).abs() < 1e-9);
     assert!(result["standard_error"].as_f64().unwrap() >= 0.0);
 
-    // The same whatever the number of threads, but for the time it took.
+    // The number of threads changes nothing but the computing time.
     let mut again = program();
     again
         .args(["evaluate", "smoke", "--tree", TREE, "--threads", "4"])
@@ -207,15 +207,15 @@ fn evaluate_reports_every_repeat() {
     again["control_steps_per_second"] = result["control_steps_per_second"].clone();
     assert_eq!(again, result);
 
-    // For people: all that it takes to repeat it.
+    // The text names everything that is needed to repeat the evaluation.
     let mut text = program();
     text.args(["evaluate", "smoke", "--tree", TREE, "--repeats", "1"]);
     set(&mut text, &["learning.discount=0.5"]);
     let text = succeeds(&mut text);
     assert!(
         text.contains(
-            "smoke with learning.discount=0.5, seed 1: 1 repeat of 8 scored trials, 8 before them, \
-             1 set of primitive subtasks; a single repeat has no standard error"
+            "smoke with learning.discount=0.5, seed 1: 1 repeat of 8 scored trials after 8 warm-up \
+             trials, 1 primitive set (no standard error from a single repeat)"
         ),
         "{text}"
     );
@@ -256,7 +256,7 @@ fn the_commands_about_trees_report_json() {
 }
 
 #[test]
-fn primitives_report_what_was_learned() {
+fn primitives_report_action_values() {
     let mut command = program();
     command.args(["primitives", "smoke"]);
     set(&mut command, SHORT);
@@ -277,7 +277,7 @@ fn primitives_report_what_was_learned() {
 }
 
 #[test]
-fn check_prints_complete_scenarios_that_are_scenarios_again() {
+fn check_prints_complete_scenarios_that_can_be_read_again() {
     let reports = json(program().args(["check", "smoke", "environment-2"]));
     for (report, name) in reports
         .as_array()
@@ -296,7 +296,7 @@ fn check_prints_complete_scenarios_that_are_scenarios_again() {
 }
 
 #[test]
-fn the_schema_accepts_what_is_shipped_and_nothing_broken() {
+fn the_schema_accepts_built_in_scenarios_and_rejects_broken_ones() {
     let schema: Value = serde_json::from_str(&succeeds(program().arg("schema"))).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();
     for embedded in EMBEDDED {
@@ -336,7 +336,7 @@ fn the_schema_accepts_what_is_shipped_and_nothing_broken() {
 }
 
 #[test]
-fn embedded_scenarios_run_in_any_folder() {
+fn built_in_scenarios_run_in_any_folder() {
     let folder = TempDir::new().unwrap();
     let listed = json(program().current_dir(&folder).arg("scenarios"));
     let names: Vec<_> = listed
@@ -367,7 +367,7 @@ fn embedded_scenarios_run_in_any_folder() {
         );
         assert_eq!(valid, format!("{}: valid\n", embedded.name));
     }
-    // A folder of the same name does not hide it.
+    // A folder of the same name does not hide the scenario.
     fs::create_dir(folder.path().join("smoke")).unwrap();
     let mut command = program();
     command.current_dir(&folder).args(["run", "smoke"]);
@@ -395,8 +395,8 @@ fn help_manual_and_completions_are_printed() {
     }
 }
 
-/// The command lines of the examples in a help text, continued lines put together, without
-/// what is said beside them.
+/// The command lines of the examples in a help text, with continued lines joined and without
+/// the remarks beside them.
 fn examples(help: &str) -> Vec<String> {
     let after = help.split("Example").nth(1).unwrap_or("");
     let lines = after
@@ -405,7 +405,7 @@ fn examples(help: &str) -> Vec<String> {
         .take_while(|line| line.starts_with("  "));
     let mut commands = Vec::<String>::new();
     for line in lines {
-        assert!(line.chars().count() <= 100, "is broken anywhere: {line}");
+        assert!(line.chars().count() <= 100, "is too long, so it is wrapped: {line}");
         match commands.last_mut().filter(|last| last.ends_with('\\')) {
             Some(last) => *last = last.replace('\\', line.trim()),
             None => commands.push(line.trim().to_owned()),
@@ -420,7 +420,7 @@ fn every_command_has_examples_and_they_use_options_that_it_has() {
     for command in COMMANDS {
         let help = succeeds(program().args(*command).arg("--help"));
         let examples = examples(&help);
-        // What has none is in the examples of the command above it.
+        // Commands without examples are in those of their parent.
         let is_shown = command[0] == "tree" && command.len() == 2 || command[0] == "scenarios";
         assert!(is_shown || !examples.is_empty(), "{command:?}");
         let calls = examples.iter().flat_map(|line| line.split(['|', ';', '>']));
@@ -438,7 +438,7 @@ fn every_command_has_examples_and_they_use_options_that_it_has() {
 }
 
 #[test]
-fn a_closed_standard_output_is_no_panic() {
+fn a_closed_standard_output_causes_no_panic() {
     let parent = TempDir::new().unwrap();
     for (index, arguments) in [
         &["schema"][..],
@@ -455,7 +455,7 @@ fn a_closed_standard_output_is_no_panic() {
     .into_iter()
     .enumerate()
     {
-        // Closed after a byte, and before the first.
+        // Closed after the first byte, and before it.
         for taken in [1, 0] {
             let mut command = program();
             command.current_dir(&parent).args(arguments);
@@ -480,7 +480,7 @@ fn a_closed_standard_output_is_no_panic() {
 }
 
 #[test]
-fn a_stopped_run_says_how_to_go_on_and_keeps_standard_output_clean() {
+fn a_stopped_run_names_the_command_that_resumes_it_and_keeps_standard_output_clean() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     let mut command = program();
@@ -512,7 +512,7 @@ fn a_stopped_run_says_how_to_go_on_and_keeps_standard_output_clean() {
     );
 }
 
-/// The middle of some durations: one hiccup of a loaded machine does not count.
+/// The median, so that one delay on a loaded machine does not count.
 fn median(mut durations: Vec<Duration>) -> Duration {
     durations.sort();
     durations[durations.len() / 2]
@@ -525,8 +525,8 @@ fn stopping_takes_effect_within_a_tenth_of_a_second() {
     let mut rng = stream(1, 0, 0, Purpose::Trials);
     let stops = (0..20).map(|attempt| {
         let mut scenario = scenario.clone();
-        // Half of the runs are stopped while primitive subtasks are trained, half of
-        // them, their training made short, while a generation lives.
+        // Half of the runs are stopped during the training of primitive subtasks; the
+        // others, with a short training, during a generation.
         let training = attempt % 2 == 0;
         if !training {
             let short = SHORT.iter().filter(|setting| setting.contains("training"));
@@ -538,7 +538,7 @@ fn stopping_takes_effect_within_a_tenth_of_a_second() {
         if !training {
             wait_until("a checkpoint", || folder.join("checkpoint.json").exists());
         }
-        // The moment is random; nothing is waited for.
+        // Stop at a random moment.
         std::thread::sleep(Duration::from_millis(rng.random_range(0..100)));
         let asked = Instant::now();
         run.controls.stop();
@@ -562,7 +562,7 @@ fn pausing_takes_effect_within_a_tenth_of_a_second() {
         wait_until("control steps", || run.controls.control_steps() > before);
         let asked = Instant::now();
         run.controls.pause();
-        // Paused when no step was computed for a while; the last one counts.
+        // The run is paused once no step is computed for a while; the last step counts.
         let mut last = (run.controls.control_steps(), asked);
         while last.1.elapsed() < Duration::from_millis(20) {
             let steps = run.controls.control_steps();

@@ -1,4 +1,4 @@
-//! What the commands share that compute an answer and print it.
+//! Commands that compute an answer, which a signal can stop, and print it.
 
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -6,55 +6,57 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::output::{self, CommandResult, Failure, Format};
-use super::signals::SignalWatcher;
+use super::signals::{SignalWatcher, Termination};
 use crate::evolution::Workers;
 use crate::lab::{AnyExperiment, experiment};
 use crate::learning::Gate;
 use crate::scenario::Scenario;
 
-/// The arguments of these commands.
+/// The arguments that these commands share.
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct AnswerArgs {
-    /// Seed of all random streams.
+    /// Random seed: the same seed gives bit for bit the same result.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub(super) seed: u64,
 
-    /// Computing threads; 0 means one for each processor.
+    /// Number of threads; 0 means one per processor.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: u16,
 
-    /// Format of the output.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
-/// What an answer is computed with.
-pub(super) struct Means<'m> {
-    pub(super) experiment: &'m dyn AnyExperiment,
-    pub(super) workers: &'m Workers,
-    pub(super) gate: &'m Gate,
+/// The resources of a computation.
+pub(super) struct Resources<'r> {
+    pub(super) experiment: &'r dyn AnyExperiment,
+    pub(super) workers: &'r Workers,
+    pub(super) gate: &'r Gate,
 }
 
 impl AnswerArgs {
-    /// Computes an answer and prints it; `describe` writes the text for people.
+    /// Computes an answer and prints it as JSON or as the text of `describe`.
     ///
-    /// A signal stops the computation; nothing is printed then.
+    /// A signal stops the computation; then nothing is printed.
     pub(super) fn answer<A: Serialize>(
         &self,
         scenario: Scenario,
-        compute: impl FnOnce(Means<'_>) -> Result<A, Failure>,
+        compute: impl FnOnce(Resources<'_>) -> Result<A, Failure>,
         describe: impl FnOnce(&A) -> String,
     ) -> CommandResult {
         let gate = Arc::new(Gate::default());
         let stopping = Arc::clone(&gate);
-        let ended = SignalWatcher::now()?.then(move || stopping.stop())?;
+        let termination = Termination::default();
+        let stop = move || stopping.stop();
+        SignalWatcher::start()?.stop_on_signals(&termination, false, stop)?;
         let experiment = experiment(scenario, self.seed)?;
-        let answer = compute(Means {
+        let answer = compute(Resources {
             experiment: &*experiment,
             workers: &Workers::new(usize::from(self.threads))?,
             gate: &gate,
         });
-        if let Some(code) = ended.exit_code() {
+        if let Some(code) = termination.exit_code() {
             return Ok(ExitCode::from(code));
         }
         let answer = answer?;

@@ -6,87 +6,22 @@ use clap::{Args, ValueEnum};
 
 use super::dashboard::DashboardArgs;
 use super::output::{Failure, Format};
-use crate::lab::AnyExperiment;
+use crate::dashboard::terminal;
 use crate::lab::inspection::Start;
-use crate::lab::{Keep, RunOptions};
+use crate::lab::{AnyExperiment, Keep, RunOptions};
 use crate::scenario::{EMBEDDED, Scenario};
 
-/// What becomes of a run when the line drops.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum OnHangup {
-    /// It goes on without a terminal, to its end.
-    #[default]
-    Detach,
-    /// It is saved and ended.
-    Stop,
-}
-
-/// ExecutionArgs a run is carried out, whatever it is.
-#[derive(Clone, Debug, clap::Args)]
-pub(super) struct ExecutionArgs {
-    /// Computing threads; 0 means one for each processor.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
-
-    /// Checkpoints kept in generations/: all, none, or every N-th generation's.
-    #[arg(long, value_name = "all|none|N", default_value = "all")]
-    keep: Keep,
-
-    /// Open no dashboard, although there is a terminal; a bar on standard error shows the
-    /// progress.
-    #[arg(long)]
-    pub(super) headless: bool,
-
-    /// What becomes of the run when the line drops: it goes on without a terminal, or is
-    /// saved and ended. 'maxq-lab watch' and 'maxq-lab resume' find it again.
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) on_hangup: OnHangup,
-
-    /// ExecutionArgs to report the result.
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) format: Format,
-
-    #[command(flatten)]
-    pub(super) dashboard: DashboardArgs,
-}
-
-impl ExecutionArgs {
-    /// The library's options.
-    pub(super) fn options(&self, force: bool) -> RunOptions {
-        RunOptions {
-            threads: usize::from(self.threads),
-            keep: self.keep,
-            force,
-        }
-    }
-
-    /// The arguments with which another process goes on with the run as it was, without a
-    /// terminal.
-    pub(super) fn resume_headless(&self) -> Vec<String> {
-        let (threads, keep) = (self.threads.to_string(), self.keep.to_string());
-        let arguments = [
-            "resume",
-            "--headless",
-            "--threads",
-            &threads,
-            "--keep",
-            &keep,
-        ];
-        arguments.map(String::from).to_vec()
-    }
-}
-
-/// A scenario with changes.
+/// A scenario and changes to its settings.
 #[derive(Clone, Debug, Args)]
 pub(super) struct ScenarioArgs {
-    /// A scenario file, or the name of an embedded scenario ('maxq-lab scenarios').
+    /// A scenario file, or the name of a built-in scenario ('maxq-lab scenarios' lists them).
     scenario: String,
 
     /// Change a setting of the scenario; may be repeated.
     ///
     /// The key is a dotted path into the complete scenario, as 'maxq-lab check --format json
-    /// SCENARIO' prints it, the value JSON or a bare word: learning.discount=0.95,
-    /// evolution.selection=random.
+    /// SCENARIO' prints it. The value is JSON or a plain word. Examples:
+    /// learning.discount=0.95, evolution.selection=random.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     settings: Vec<String>,
 }
@@ -98,9 +33,9 @@ impl ScenarioArgs {
         let is_embedded = EMBEDDED.iter().any(|embedded| embedded.name == name);
         if !is_embedded && Path::new(name).join("run.json").is_file() {
             let message = format!(
-                "{name}: found a run folder; allowed: a scenario file, or the name of an embedded \
-                 scenario; 'maxq-lab resume {name}' goes on with the run, 'maxq-lab replay {name}' \
-                 shows it"
+                "{name}: found a run folder; allowed: a scenario file, or the name of a built-in \
+                 scenario (to resume this run: 'maxq-lab resume {name}'; to view it: 'maxq-lab \
+                 replay {name}')"
             );
             return Err(message.into());
         }
@@ -108,23 +43,94 @@ impl ScenarioArgs {
     }
 }
 
-/// Where the trials of rollouts begin.
-#[derive(Debug, clap::Args)]
+/// The state in which rollouts start.
+#[derive(Debug, Args)]
 pub(super) struct StartArg {
-    /// The state in which the trials of rollouts begin: what is the case, and where the
-    /// agent is, such as 'from R to B at 0,3' or 'carrying at 500,1200 heading 90'.
+    /// Start every rollout in this state, such as 'from R to B at 0,3' or 'carrying at
+    /// 500,1200 heading 90' [default: a random start]
     #[arg(long, value_name = "STATE")]
     start: Option<String>,
 }
 
 impl StartArg {
-    /// The state in the world of the experiment, if the person has named one.
+    /// The state in the world of `experiment`, if one was given.
     pub(super) fn read(&self, experiment: &dyn AnyExperiment) -> Result<Option<Start>, Failure> {
-        let start = self
-            .start
-            .as_deref()
-            .map(|text| experiment.read_start(text));
+        let start = self.start.as_deref().map(|text| Start::read(text, experiment));
         let start = start.transpose();
         start.map_err(|error| format!("--start: {error}").into())
+    }
+}
+
+/// What happens to a run when its terminal is lost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum OnHangup {
+    /// Continue to the end without a terminal.
+    #[default]
+    Detach,
+    /// Save and exit.
+    Stop,
+}
+
+impl OnHangup {
+    /// Whether the work goes on after SIGHUP.
+    ///
+    /// Without a terminal that could be lost, SIGHUP is a request to end.
+    pub(super) fn survives(self) -> bool {
+        self == Self::Detach && terminal::is_attached()
+    }
+}
+
+/// How a run is executed and shown.
+#[derive(Clone, Debug, Args)]
+pub(super) struct ExecutionArgs {
+    /// Number of threads; 0 means one per processor.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
+
+    /// Which checkpoints to keep in generations/: all, none, or one every N generations.
+    #[arg(long, value_name = "all|none|N", default_value = "all")]
+    keep: Keep,
+
+    /// Show a progress bar instead of the dashboard.
+    #[arg(long)]
+    pub(super) headless: bool,
+
+    /// What to do when the terminal is lost (SIGHUP): continue without one, or save and exit.
+    ///
+    /// 'maxq-lab watch' shows a run that continues; 'maxq-lab resume' resumes a run that was
+    /// saved.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) on_hangup: OnHangup,
+
+    /// Format of the result.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) format: Format,
+
+    #[command(flatten)]
+    pub(super) dashboard: DashboardArgs,
+}
+
+impl ExecutionArgs {
+    /// The options of the run.
+    pub(super) fn options(&self, force: bool) -> RunOptions {
+        RunOptions {
+            threads: usize::from(self.threads),
+            keep: self.keep,
+            force,
+        }
+    }
+
+    /// The arguments with which another process resumes the run without a terminal.
+    pub(super) fn resume_headless(&self) -> Vec<String> {
+        let (threads, keep) = (self.threads.to_string(), self.keep.to_string());
+        let words = [
+            "resume",
+            "--headless",
+            "--threads",
+            &threads,
+            "--keep",
+            &keep,
+        ];
+        words.map(String::from).to_vec()
     }
 }

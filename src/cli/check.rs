@@ -1,4 +1,4 @@
-//! `maxq-lab check`: are scenario files and plans valid?
+//! `maxq-lab check`: validates scenario files and plans.
 
 use std::process::ExitCode;
 
@@ -9,27 +9,26 @@ use crate::lab::experiment;
 use crate::report::Plan;
 use crate::scenario::Scenario;
 
-/// Check scenario files, and plans of studies.
+/// Validate scenario files and study plans.
 ///
-/// With --format json the complete scenarios are printed, defaults written out: what
+/// With --format json, complete scenarios are printed, including defaults: every setting that
 /// 'maxq-lab run --set' can change.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   maxq-lab check mine.json my-plan.json
-  maxq-lab check environment-1 --format json | jq '.[0].scenario'       all that --set can change
+  maxq-lab check environment-1 --format json | jq '.[0].scenario'       all settings for --set
   maxq-lab check mine.json --set learning.discount=0.95")]
 pub(super) struct Args {
-    /// Scenario files, plans, or names of embedded ones.
+    /// Scenario files, plan files, or names of built-in scenarios and plans.
     #[arg(required = true)]
     files: Vec<String>,
 
-    /// Check the scenarios with a setting changed, as 'maxq-lab run --set' would; may be
-    /// repeated.
+    /// Change a setting before validation, as 'maxq-lab run --set' does; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     settings: Vec<String>,
 
-    /// How to report.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -46,12 +45,9 @@ struct Report {
     plan: Option<Plan>,
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab check`.
 pub(super) fn main(args: &Args) -> CommandResult {
-    let report = |file: &String| match Plan::is_plan(file) {
-        true => report_plan(file, &args.settings),
-        false => report_scenario(file, &args.settings),
-    };
+    let report = |file: &String| Report::of(file, &args.settings);
     let reports: Vec<_> = args.files.iter().map(report).collect();
     match args.format {
         Format::Json => output::json(&reports)?,
@@ -64,52 +60,48 @@ pub(super) fn main(args: &Args) -> CommandResult {
             }
         }
     }
-    match reports.iter().all(|report| report.valid) {
-        true => Ok(ExitCode::SUCCESS),
-        false => Ok(ExitCode::FAILURE),
+    let all_valid = reports.iter().all(|report| report.valid);
+    Ok(if all_valid {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+impl Report {
+    fn of(file: &str, settings: &[String]) -> Self {
+        let mut report = Self {
+            file: file.to_owned(),
+            valid: false,
+            error: None,
+            scenario: None,
+            plan: None,
+        };
+        let result = if Plan::is_plan(file) {
+            checked_plan(file, settings).map(|plan| report.plan = Some(plan))
+        } else {
+            checked_scenario(file, settings).map(|scenario| report.scenario = Some(scenario))
+        };
+        report.valid = result.is_ok();
+        report.error = result.err();
+        report
     }
 }
 
-fn report_scenario(file: &str, settings: &[String]) -> Report {
-    let loaded = Scenario::load(file)
-        .and_then(|scenario| scenario.with_settings(settings))
-        .map_err(|error| error.to_string());
-    let checked = loaded.and_then(|scenario| {
-        let ready = experiment(scenario.clone(), 0);
-        ready
-            .map(|_| scenario)
-            .map_err(|error| format!("{file}: {error}"))
-    });
-    let (scenario, error) = match checked {
-        Ok(scenario) => (Some(scenario), None),
-        Err(error) => (None, Some(error)),
-    };
-    Report {
-        file: file.to_owned(),
-        valid: error.is_none(),
-        error,
-        scenario,
-        plan: None,
-    }
+fn checked_scenario(file: &str, settings: &[String]) -> Result<Scenario, String> {
+    let scenario = Scenario::load(file).and_then(|scenario| scenario.with_settings(settings));
+    let scenario = scenario.map_err(|error| error.to_string())?;
+    experiment(scenario.clone(), 0).map_err(|error| format!("{file}: {error}"))?;
+    Ok(scenario)
 }
 
-fn report_plan(file: &str, settings: &[String]) -> Report {
-    let (plan, error) = match (Plan::load(file), settings.first()) {
-        (Ok(plan), None) => (Some(plan), None),
-        (Ok(_), Some(found)) => (
-            None,
-            Some(format!(
-                "--set: found {found:?} for the plan {file}; allowed: for scenarios, since the \
-                 settings of a plan are those of its arms"
-            )),
-        ),
-        (Err(error), _) => (None, Some(error.to_string())),
-    };
-    Report {
-        file: file.to_owned(),
-        valid: error.is_none(),
-        error,
-        scenario: None,
-        plan,
+fn checked_plan(file: &str, settings: &[String]) -> Result<Plan, String> {
+    let plan = Plan::load(file).map_err(|error| error.to_string())?;
+    match settings.first() {
+        None => Ok(plan),
+        Some(found) => Err(format!(
+            "--set: found {found:?} with the plan {file}; allowed: with scenarios only (the \
+             settings of a plan stand in its arms)"
+        )),
     }
 }

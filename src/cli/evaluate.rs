@@ -1,20 +1,21 @@
-//! `maxq-lab evaluate`: how good is a structure?
+//! `maxq-lab evaluate`: measures the structure of a hierarchy.
 
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::answer::{AnswerArgs, Means};
+use super::answer::{AnswerArgs, Resources};
 use super::args::ScenarioArgs;
 use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
 use crate::lab::{Protocol, Scored, departures, in_words, with_changes};
 
-/// Tell how good a hierarchy's structure is.
+/// Evaluate the structure of a hierarchy.
 ///
-/// Each repeat is a fresh hierarchy of the structure that learns for the warm-up trials and
-/// is then scored, learning on. The repeats are spread over separately trained sets of
-/// primitive subtasks (banks), whose differences are part of the standard error.
+/// Each repeat creates a new hierarchy with this structure. The hierarchy learns during the
+/// warm-up trials and continues to learn while it is scored. Repeats are distributed over
+/// separately trained primitive sets (sets of primitive subtasks); the standard error includes
+/// the differences between these sets.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Example:
@@ -23,35 +24,35 @@ pub(super) struct Args {
     #[command(flatten)]
     scenario: ScenarioArgs,
 
-    /// The hierarchy, as text: '(Root Wander ApproachBattery ApproachNest)'.
+    /// Hierarchy, as text: '(Root Wander ApproachBattery ApproachNest)'.
     #[arg(long)]
     tree: String,
 
-    /// Trials of each repeat before scoring starts.
+    /// Number of trials in each repeat before scoring starts.
     #[arg(long, value_name = "W", default_value_t = 8, value_parser = clap::value_parser!(u64).range(0..=100_000))]
     warmup: u64,
 
-    /// Scored trials of each repeat.
+    /// Number of scored trials in each repeat.
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     trials: u64,
 
-    /// Fresh hierarchies.
+    /// Number of repeats.
     #[arg(long, value_name = "R", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     repeats: u64,
 
-    /// Separately trained sets of primitive subtasks; no more than there are repeats are used.
-    #[arg(long, value_name = "B", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=10_000))]
-    banks: u64,
+    /// Number of separately trained primitive sets; at most one per repeat is used.
+    #[arg(long, alias = "banks", value_name = "B", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    primitive_sets: u64,
 
     #[command(flatten)]
     answer: AnswerArgs,
 }
 
-/// How good a structure is, and how that was found.
+/// The evaluation of a structure.
 #[derive(Serialize)]
 pub(super) struct Report {
     scenario: String,
-    /// Settings in which it departs from the embedded one of its name.
+    /// Settings that differ from the built-in scenario of this name.
     changed: Option<String>,
     seed: u64,
     warmup: usize,
@@ -62,20 +63,20 @@ pub(super) struct Report {
     control_steps_per_second: f64,
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab evaluate`.
 pub(super) fn main(args: Args) -> CommandResult {
     let scenario = args.scenario.load()?;
     args.answer
-        .answer(scenario, |means| args.compute(&means), describe)
+        .answer(scenario, |resources| args.compute(&resources), describe)
 }
 
 impl Args {
-    fn compute(&self, means: &Means<'_>) -> Result<Report, Failure> {
-        let Means {
+    fn compute(&self, resources: &Resources<'_>) -> Result<Report, Failure> {
+        let Resources {
             experiment,
             workers,
             gate,
-        } = *means;
+        } = *resources;
         let tree = experiment
             .read_tree(&self.tree)
             .map_err(|error| format!("--tree: {error}"))?;
@@ -84,8 +85,8 @@ impl Args {
             warmup: count(self.warmup),
             trials: count(self.trials),
             repeats: count(self.repeats),
-            // A set that no repeat uses would be trained for nothing.
-            banks: count(self.banks.min(self.repeats)),
+            // A set that no repeat uses is not trained.
+            banks: count(self.primitive_sets.min(self.repeats)),
         };
         let started = Instant::now();
         let bar = repeats(self.repeats);
@@ -114,23 +115,24 @@ fn describe(report: &Report) -> String {
         Some(error) => format!(" +- {error:.digits$} (standard error)"),
         None => String::new(),
     };
-    let unknown = match evaluation.standard_error {
-        Some(_) => "",
-        None => "; a single repeat has no standard error",
+    let single = if evaluation.standard_error.is_none() {
+        " (no standard error from a single repeat)"
+    } else {
+        ""
     };
     format!(
-        "{}\n{}, seed {}: {} of {}, {} before them, {} of primitive subtasks{unknown}\n\
-         {:.1}{} time steps a trial\n\
-         {:.2}{} return of a trial, the sum of its rewards\n\
-         {:.2} % of the trials delivered\n\
-         {} control steps, {:.0} a second with the training of the primitive subtasks\n",
+        "{}\n{}, seed {}: {} of {} after {}, {}{single}\n\
+         {:.1}{} time steps per trial\n\
+         {:.2}{} return per trial (sum of rewards)\n\
+         {:.2} % of trials delivered\n\
+         {} control steps, {:.0} per second including the training of the primitive subtasks\n",
         evaluation.tree,
         with_changes(&report.scenario, report.changed.as_deref()),
         report.seed,
         counted(evaluation.repeats.len() as u64, "repeat"),
         counted(report.trials as u64, "scored trial"),
-        report.warmup,
-        counted(report.banks as u64, "set"),
+        counted(report.warmup as u64, "warm-up trial"),
+        counted(report.banks as u64, "primitive set"),
         evaluation.mean,
         error(evaluation.standard_error, 1),
         scored.mean_return,

@@ -1,4 +1,4 @@
-//! `maxq-lab export`: tables, figures and hierarchies of runs and studies.
+//! `maxq-lab export`: writes tables, figures and hierarchies of runs and studies.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,15 +10,15 @@ use crate::files::write_atomically;
 use crate::report::figures::{Figure, FigureNumber, RunSource, study_figure};
 use crate::report::{Study, read_facts, run_export, study_export};
 
-/// Export a run or a study: tables, figures, hierarchies.
+/// Export tables, figures and hierarchies of a run or a study.
 ///
-/// Of a run: its individuals as a table (csv, json), a summary (markdown), its best
-/// hierarchy (dot), a figure (svg, text). Of a study: its runs as a table (csv), all
-/// findings (json), the report (markdown), the most frequent final hierarchies (dot), a
-/// figure (svg, text). With --figure, csv and json are the numbers of the figure.
+/// For a run: a table of its individuals (csv, json), a summary (markdown), its best hierarchy
+/// (dot), or a figure (svg, text). For a study: a table of its runs (csv), all findings (json),
+/// the report (markdown), the most frequent final hierarchies (dot), or a figure (svg, text).
+/// With --figure, csv, json and markdown contain the data of that figure.
 ///
-/// Figures are numbered as in the thesis: 4.3 action values over the angle, 4.5 hierarchies
-/// obtained, 4.7 structural difference, 4.8 performance, 4.9 the best of selected
+/// Figures have their numbers from the thesis: 4.3 action values over the angle, 4.5 evolved
+/// hierarchies, 4.7 structural difference, 4.8 performance, 4.9 the best hierarchies of selected
 /// generations, 4.10 selection probabilities.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -27,46 +27,47 @@ Examples:
   maxq-lab export runs/environment-2-seed1 --format text --figure 4.10
   maxq-lab export studies/thesis --format csv > runs.csv")]
 pub(super) struct Args {
-    /// The folder of a run or of a study.
+    /// Run folder or study folder.
     dir: PathBuf,
 
-    /// As what.
+    /// Output format.
     #[arg(long, value_enum)]
     format: ExportFormat,
 
-    /// A figure of the thesis: 4.3, 4.5, 4.7, 4.8, 4.9 or 4.10.
+    /// Figure of the thesis: 4.3, 4.5, 4.7, 4.8, 4.9 or 4.10.
     #[arg(long, value_name = "NUMBER")]
     figure: Option<FigureNumber>,
 
-    /// A file to write to [default: standard output].
+    /// Output file [default: standard output].
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ExportFormat {
-    /// A tidy table: one header, units in the names of columns.
+    /// Table with one header line and units in the column names.
     Csv,
-    /// For programs.
+    /// JSON for programs.
     Json,
-    /// For people.
+    /// Markdown to read.
     Markdown,
     /// Hierarchies for Graphviz.
     Dot,
-    /// A figure.
+    /// Figure as an SVG image.
     Svg,
-    /// A figure in the terminal.
+    /// Figure as text for the terminal.
     Text,
 }
 
-/// Columns of a figure in text where there is no terminal that says.
+/// Width of a text figure where neither $COLUMNS nor a terminal tells, in columns.
 const COLUMNS: usize = 80;
 
-/// Carries out the command.
+/// Runs `maxq-lab export`.
 pub(super) fn main(args: &Args) -> CommandResult {
-    let text = match args.dir.join("study.json").is_file() {
-        true => of_study(args)?,
-        false => of_run(args)?,
+    let text = if args.dir.join("study.json").is_file() {
+        of_study(args)?
+    } else {
+        of_run(args)?
     };
     match &args.out {
         None => output::text(&text)?,
@@ -105,12 +106,14 @@ fn of_study(args: &Args) -> Result<String, Failure> {
     })
 }
 
-/// The figure asked for; formats that are figures need one.
+/// The figure asked for; svg and text require one.
 fn wanted_figure(args: &Args) -> Result<Option<FigureNumber>, Failure> {
     let draws = matches!(args.format, ExportFormat::Svg | ExportFormat::Text);
     if draws && args.figure.is_none() {
         let allowed = FigureNumber::ALL.map(FigureNumber::name).join(", ");
-        return Err(format!("--figure: found none; allowed with svg and text: {allowed}").into());
+        return Err(
+            format!("--figure: found none with --format svg or text; allowed: {allowed}").into(),
+        );
     }
     Ok(args.figure)
 }
@@ -124,7 +127,7 @@ fn in_format(figure: &Figure, format: ExportFormat) -> Result<String, Failure> {
         ExportFormat::Json => serde_json::to_string_pretty(figure)? + "\n",
         ExportFormat::Dot => {
             let message =
-                "--format: found dot; allowed with --figure: svg, text, csv, markdown, json";
+                "--format: found dot with --figure; allowed: svg, text, csv, markdown, json";
             return Err(message.into());
         }
     })

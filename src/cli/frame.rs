@@ -1,4 +1,4 @@
-//! `maxq-lab frame`: one frame of the dashboard.
+//! `maxq-lab frame`: prints one frame of the dashboard.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,10 +15,10 @@ use crate::dashboard::{
 use crate::lab::inspection::Archive;
 use crate::lab::{Recording, lasting_experiment};
 
-/// Print one frame of the dashboard over a recorded run.
+/// Print one frame of the dashboard of a recorded run.
 ///
-/// For papers, bug reports and tests. The frame is what the dashboard shows after the given
-/// time and keys: the same arguments give the same frame.
+/// For papers, bug reports and tests. The frame shows the dashboard after the given playing time
+/// and keys. The same arguments give the same frame.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -27,26 +27,26 @@ Examples:
   maxq-lab frame runs/environment-1-seed1 --generation 3 --play 2 --size 200x60 \\
            --keys 'tab tab enter'")]
 pub(super) struct Args {
-    /// The run folder.
+    /// Run folder.
     run_dir: PathBuf,
 
     #[command(flatten)]
     start: StartArg,
 
-    /// Columns and rows.
+    /// Size of the frame, in columns and rows.
     #[arg(long, value_name = "WxH", default_value = "120x40")]
     size: Size,
 
-    /// The view: overview, arena, hierarchy, fitness, policy, population, status, inspector,
+    /// View: overview, arena, hierarchy, fitness, policy, population, status, inspector,
     /// policy-map, stepper, or compare.
     #[arg(long, value_name = "V", default_value = "overview")]
     view: ViewId,
 
-    /// The generation to look at [default: the last].
+    /// Generation to show [default: the last].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     generation: Option<u64>,
 
-    /// Seconds that the rollout plays before the frame is taken.
+    /// Seconds that the rollout plays before the keys are pressed.
     #[arg(
         long,
         value_name = "S",
@@ -55,12 +55,12 @@ pub(super) struct Args {
     )]
     play: f64,
 
-    /// Keys that are pressed then, with spaces between: characters, or names such as enter,
-    /// tab, esc, up, page-down, f1, ctrl-l. ? in the dashboard tells what they do.
+    /// Keys to press, separated by spaces: characters, or names such as enter, tab, esc, up,
+    /// page-down, f1, ctrl-l; press ? in the dashboard for what they do.
     #[arg(long, default_value = "")]
     keys: String,
 
-    /// How to write it.
+    /// Output format.
     #[arg(long, value_name = "text|ansi|svg", default_value = "text")]
     format: FrameFormat,
 
@@ -72,11 +72,11 @@ pub(super) struct Args {
 #[derive(Clone, Copy, Debug)]
 struct Size(u16, u16);
 
-/// Most columns and rows of a frame.
+/// Largest number of columns, and of rows.
 const MOST: u16 = 1000;
-/// Longest time that a rollout plays, in seconds.
+/// Longest playing time, in seconds.
 const LONGEST: f64 = 3600.0;
-/// Time between two frames of the dashboard.
+/// Time step of the rollout.
 const TICK: Duration = Duration::from_millis(100);
 
 impl FromStr for Size {
@@ -92,14 +92,11 @@ impl FromStr for Size {
     }
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab frame`.
 pub(super) fn main(args: &Args) -> CommandResult {
     if !(0.0..=LONGEST).contains(&args.play) {
-        let message = format!(
-            "--play: found {}; allowed: 0 to {LONGEST} seconds",
-            args.play
-        );
-        return Err(message.into());
+        let found = args.play;
+        return Err(format!("--play: found {found}; allowed: 0 to {LONGEST} seconds").into());
     }
     let keys: Result<Vec<Key>, _> = args.keys.split_ascii_whitespace().map(str::parse).collect();
     let keys = keys.map_err(|error| format!("--keys: {error}"))?;

@@ -1,11 +1,11 @@
-//! `maxq-lab learn`: one learner in a finite world, held against the exact values.
+//! `maxq-lab learn`: compares one learner with the exact values of a finite world.
 
 use std::fmt::Write;
 
 use clap::ValueEnum;
 use serde::Serialize;
 
-use super::answer::{AnswerArgs, Means};
+use super::answer::{AnswerArgs, Resources};
 use super::args::ScenarioArgs;
 use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
@@ -14,12 +14,12 @@ use crate::lab::{
     ValueGrid, departures, in_words, with_changes,
 };
 
-/// Let one learner learn a finite world, and compare it with the exact values.
+/// Train one learner in a finite world and compare it with the exact values.
 ///
-/// Learners are TD(0), Q-learning, Q-learning with RBF features (thesis Algorithms 2.1 to
-/// 2.3) and MAXQ-Q on a hierarchy. Exact values come from dynamic programming on the
-/// world's model, which no learner sees. A policy counts as optimal when its exact expected
-/// return, from a random start and without exploration, is within the tolerance of the best.
+/// The learners are TD(0), Q-learning, Q-learning with RBF features (thesis Algorithms 2.1 to
+/// 2.3) and MAXQ-Q with a hierarchy. The exact values come from dynamic programming on the model
+/// of the world, which no learner sees. A policy counts as optimal if its exact expected return,
+/// from a random start and without exploration, is within the tolerance of the optimum.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -31,27 +31,28 @@ pub(super) struct Args {
     #[command(flatten)]
     scenario: ScenarioArgs,
 
-    /// How to learn.
+    /// Learning algorithm.
     #[arg(long, value_enum)]
-    algorithm: Name,
+    algorithm: AlgorithmName,
 
-    /// The hierarchy for maxq-q, as text [default: the world's hand-made one].
+    /// Hierarchy for maxq-q, as text [default: the hand-made hierarchy of the world].
     #[arg(long, value_name = "T")]
     tree: Option<String>,
 
-    /// The policy whose values td0 learns [default: optimal].
+    /// Policy that td0 evaluates [default: optimal].
     #[arg(long, value_enum)]
     policy: Option<PolicyName>,
 
-    /// Primitive steps of each repeat.
+    /// Number of primitive steps in each repeat.
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     steps: u64,
 
-    /// Primitive steps between two checks; they end with a trial.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
-    check_every: u64,
+    /// Number of primitive steps between two comparisons with the exact values; a comparison waits
+    /// for the end of the trial.
+    #[arg(long, alias = "check-every", value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    evaluate_every: u64,
 
-    /// A policy is optimal if its expected return is no further below the best than this.
+    /// A policy counts as optimal if its expected return is at most this far below the optimum.
     #[arg(
         long,
         value_name = "RETURN",
@@ -60,13 +61,13 @@ pub(super) struct Args {
     )]
     tolerance: f64,
 
-    /// Learners that begin from nothing.
+    /// Number of repeats, each with a new learner.
     #[arg(long, value_name = "R", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     repeats: u64,
 
-    /// What is the case in the states whose values are printed, such as 'from R to B';
-    /// by default the first there is.
-    #[arg(long, value_name = "CASE")]
+    /// Print the state values of this variant of the task, such as 'from R to B' [default: the
+    /// first variant].
+    #[arg(long, value_name = "VARIANT")]
     show: Option<String>,
 
     #[command(flatten)]
@@ -74,19 +75,19 @@ pub(super) struct Args {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Name {
-    /// TD(0) on a table.
+enum AlgorithmName {
+    /// TD(0) with a table.
     Td0,
-    /// Q-learning on a table.
+    /// Q-learning with a table.
     QLearning,
     /// Q-learning with normalised Gaussian features.
     QLearningRbf,
-    /// MAXQ-Q on a hierarchy.
+    /// MAXQ-Q with a hierarchy.
     MaxqQ,
 }
 
-impl Name {
-    /// As it is given.
+impl AlgorithmName {
+    /// The name on the command line.
     fn word(self) -> String {
         let value = self.to_possible_value();
         value.map_or_else(String::new, |value| value.get_name().to_owned())
@@ -97,36 +98,36 @@ impl Name {
 enum PolicyName {
     /// The optimal policy.
     Optimal,
-    /// All actions alike.
+    /// All actions with equal probability.
     Random,
 }
 
-/// What was learned, and how.
+/// The result of a learner.
 #[derive(Serialize)]
 pub(super) struct Report {
     scenario: String,
     algorithm: String,
-    /// Settings in which the scenario departs from the embedded one of its name.
+    /// Settings that differ from the built-in scenario of this name.
     changed: Option<String>,
     seed: u64,
     steps: u64,
     tolerance: f64,
     #[serde(flatten)]
     learned: Learned,
-    /// Values of the first repeat at its end, and the exact ones.
+    /// Final values of the first repeat, and the exact values.
     values: Vec<ValueGrid>,
     #[serde(skip)]
     shown: usize,
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab learn`.
 pub(super) fn main(args: Args) -> CommandResult {
     let scenario = args.scenario.load()?;
-    for (option, is_there, algorithm) in [
-        ("--tree", args.tree.is_some(), Name::MaxqQ),
-        ("--policy", args.policy.is_some(), Name::Td0),
+    for (option, is_given, algorithm) in [
+        ("--tree", args.tree.is_some(), AlgorithmName::MaxqQ),
+        ("--policy", args.policy.is_some(), AlgorithmName::Td0),
     ] {
-        if is_there && args.algorithm != algorithm {
+        if is_given && args.algorithm != algorithm {
             let (found, allowed) = (args.algorithm.word(), algorithm.word());
             return Err(format!("{option}: found with {found}; allowed: with {allowed}").into());
         }
@@ -136,26 +137,26 @@ pub(super) fn main(args: Args) -> CommandResult {
         return Err(format!("--tolerance: found {found}; allowed: 0 to 1000").into());
     }
     args.answer
-        .answer(scenario, |means| args.compute(&means), describe)
+        .answer(scenario, |resources| args.compute(&resources), describe)
 }
 
 impl Args {
-    fn compute(&self, means: &Means<'_>) -> Result<Report, Failure> {
-        let Means {
+    fn compute(&self, resources: &Resources<'_>) -> Result<Report, Failure> {
+        let Resources {
             experiment,
             workers,
             gate,
-        } = *means;
+        } = *resources;
         let name = &experiment.scenario().name;
         let in_world = |error: LearnError| format!("{name}: {error}");
         if !experiment.is_finite() {
-            // Before a hierarchy is asked for that would not help.
+            // Checked first: a missing hierarchy is not the reason.
             return Err(in_world(LearnError::NotFinite).into());
         }
         let algorithm = algorithm(self, experiment)?;
         let protocol = LearnProtocol {
             steps: self.steps,
-            every: self.check_every,
+            every: self.evaluate_every,
             tolerance: self.tolerance,
             repeats: usize::try_from(self.repeats).unwrap_or(usize::MAX),
         };
@@ -185,7 +186,7 @@ fn describe(report: &Report) -> String {
     let trials: u64 = learned.repeats.iter().map(|course| course.trials).sum();
     let mut text = format!(
         "{}, {}, seed {}: {} of {}, {}\n\
-         expected return of the optimal policy   {:.4}\n",
+         expected return, optimal policy        {:.4}\n",
         with_changes(&report.scenario, report.changed.as_deref()),
         report.algorithm,
         report.seed,
@@ -194,22 +195,21 @@ fn describe(report: &Report) -> String {
         counted(trials, "trial"),
         learned.optimal_return
     );
-    // Where the policy is given there is none that becomes optimal. Writing to a string
-    // cannot fail.
+    // A given policy does not become optimal. Writing to a string cannot fail.
     if !learned.policy_is_given {
         let ends = |course: &Course| {
             let last = course.checks.last();
             last.is_some_and(|check| check.greedy_return.is_some())
         };
         let at_the_end = learned.final_greedy_return.map_or_else(
-            || format!("comes to an end {}", only(learned, ends)),
+            || format!("ends its trials {}", only(learned, ends)),
             |mean| interval(mean, 4),
         );
         let _ = write!(
             text,
-            "of the greedy policy at the end         {}\n\
-             primitive steps until it is optimal     {}\n\
-             until it is and stays so                {}\n",
+            "expected return, final greedy policy   {}\n\
+             primitive steps until first optimal    {}\n\
+             primitive steps until always optimal   {}\n",
             at_the_end,
             reached(learned, learned.steps_until_optimal, |course| course
                 .steps_until_optimal),
@@ -225,14 +225,14 @@ fn describe(report: &Report) -> String {
     if let Some(check) = last {
         let _ = writeln!(
             text,
-            "largest error of a value, repeat 1      {:.4}",
+            "largest error of a value in repeat 1   {:.4}",
             check.largest_error
         );
     }
     if let Some(grid) = report.values.get(report.shown) {
-        let _ = write!(text, "\nV {}, learned by repeat 1:\n", grid.case);
+        let _ = write!(text, "\nState values {}, learned in repeat 1:\n", grid.case);
         text.push_str(&table(&grid.learned));
-        let _ = write!(text, "\nexact:\n");
+        let _ = write!(text, "\nExact:\n");
         text.push_str(&table(&grid.exact));
     }
     text
@@ -240,13 +240,13 @@ fn describe(report: &Report) -> String {
 
 fn algorithm(args: &Args, experiment: &dyn AnyExperiment) -> Result<Algorithm, Failure> {
     Ok(match args.algorithm {
-        Name::Td0 => Algorithm::Td0(match args.policy {
+        AlgorithmName::Td0 => Algorithm::Td0(match args.policy {
             Some(PolicyName::Random) => GivenPolicy::Random,
             Some(PolicyName::Optimal) | None => GivenPolicy::Optimal,
         }),
-        Name::QLearning => Algorithm::QLearning,
-        Name::QLearningRbf => Algorithm::QLearningRbf,
-        Name::MaxqQ => {
+        AlgorithmName::QLearning => Algorithm::QLearning,
+        AlgorithmName::QLearningRbf => Algorithm::QLearningRbf,
+        AlgorithmName::MaxqQ => {
             let text = args.tree.as_deref().or(experiment.hand_made());
             let text = text.ok_or("--tree: found none; allowed: a hierarchy")?;
             let tree = experiment.read_tree(text);
@@ -276,11 +276,11 @@ fn reached(learned: &Learned, mean: Option<Mean>, of: fn(&Course) -> Option<u64>
     )
 }
 
-/// In how many repeats something is the case that is not in all.
-fn only(learned: &Learned, case: impl Fn(&Course) -> bool) -> String {
-    let count = learned.repeats.iter().filter(|course| case(course)).count();
+/// Says in how few of the repeats `holds` is true.
+fn only(learned: &Learned, holds: impl Fn(&Course) -> bool) -> String {
+    let count = learned.repeats.iter().filter(|course| holds(course)).count();
     let all = counted(learned.repeats.len() as u64, "repeat");
-    format!("in {count} of {all} only")
+    format!("in only {count} of {all}")
 }
 
 fn table(rows: &[Vec<Option<f64>>]) -> String {

@@ -1,4 +1,4 @@
-//! Following a run of this process to its end, with a dashboard or without.
+//! Follows a run of this process to its end, with a dashboard or without.
 
 use std::os::unix::process::CommandExt;
 use std::path::Path;
@@ -9,55 +9,48 @@ use std::time::Duration;
 use signal_hook::consts::SIGHUP;
 
 use super::args::{ExecutionArgs, OnHangup};
-use super::dashboard::{DashboardArgs, DashboardSettings};
+use super::dashboard::DashboardSettings;
 use super::output::{self, CommandResult, Failure, Format, counted};
 use super::progress;
-use super::signals::{SignalWatcher, Termination};
+use super::signals::{SignalWatcher, Termination, spawn};
+use super::tree::{by_state_type, with_tree};
 use crate::dashboard::session::{Exit, Source};
 use crate::dashboard::terminal;
 use crate::hierarchy::{Glyphs, draw};
 use crate::lab::{Outcome, Run, departures, in_words, lasting_experiment};
 use crate::scenario::{Scenario, Selection};
 
-/// Longest wait for a terminal to take the last words.
+/// How long a terminal may take to accept the last messages after a signal.
 pub(super) const PATIENCE: Duration = Duration::from_secs(2);
 
-/// The keys and looks of a dashboard, if there will be one.
-pub(super) fn dashboard(execution: &ExecutionArgs) -> Result<Option<DashboardSettings>, Failure> {
-    match execution.headless || !DashboardArgs::is_possible() {
-        true => Ok(None),
-        false => execution.dashboard.settings().map(Some),
-    }
-}
-
-/// Follows a run to its end and reports its result. Signals were caught before the run
-/// began, so that none falls between.
+/// Follows a run to its end and reports its result.
+///
+/// `signals` must have been started before the run, so that none is missed.
 pub(super) fn follow(
     run: Run,
     dashboard: Option<DashboardSettings>,
     signals: SignalWatcher,
     execution: &ExecutionArgs,
 ) -> CommandResult {
-    let ended = Termination::default();
-    // There is a line that can drop. Without one SIGHUP asks the program to end.
-    let survives = execution.on_hangup == OnHangup::Detach && terminal::is_attached();
-    let exit = match dashboard {
-        Some(dashboard) => match show(&run, dashboard, &signals) {
-            Ok(exit) => Some(exit),
-            Err(failure) => {
-                run.controls.stop();
-                run.join()?;
-                return Err(failure);
-            }
-        },
+    let termination = Termination::default();
+    // Asked while there is still a terminal.
+    let survives = execution.on_hangup.survives();
+    let exit = match dashboard.map(|dashboard| show(&run, dashboard, &signals)) {
         None => None,
+        Some(Ok(exit)) => Some(exit),
+        Some(Err(failure)) => {
+            run.controls.stop();
+            run.join()?;
+            return Err(failure);
+        }
     };
-    // Nobody could let a run go on that waits.
-    if goes_on(exit, &ended, execution.on_hangup, || run.controls.resume()) {
-        headless(&run, signals, &ended, survives)?;
+    // A paused run is resumed: without a dashboard nobody else could.
+    let resume = || run.controls.resume();
+    if continues(exit, &termination, execution.on_hangup, resume) {
+        headless(&run, signals, &termination, survives)?;
     } else {
         if exit == Some(Exit::Left) {
-            ended.by_hand();
+            termination.record_user_stop();
         }
         run.controls.stop();
     }
@@ -75,15 +68,13 @@ pub(super) fn follow(
     }
     if outcome.stopped {
         let folder = &outcome.run_dir;
-        output::message(&format!("stopped; go on with: maxq-lab resume {folder}"));
+        output::message(&format!("stopped; resume with: maxq-lab resume {folder}"));
     }
-    match exit {
-        Some(Exit::Panicked) => Ok(ExitCode::FAILURE),
-        _ => Ok(ended
-            .exit_code()
-            .filter(|_| outcome.stopped)
-            .map_or(ExitCode::SUCCESS, ExitCode::from)),
+    if exit == Some(Exit::Panicked) {
+        return Ok(ExitCode::FAILURE);
     }
+    let code = termination.exit_code().filter(|_| outcome.stopped);
+    Ok(code.map_or(ExitCode::SUCCESS, ExitCode::from))
 }
 
 fn show(run: &Run, dashboard: DashboardSettings, signals: &SignalWatcher) -> Result<Exit, Failure> {
@@ -92,82 +83,83 @@ fn show(run: &Run, dashboard: DashboardSettings, signals: &SignalWatcher) -> Res
     dashboard.show(experiment, &run.folder, source, signals)
 }
 
-/// Whether work goes on without its dashboard that was left like this, or was not there;
-/// `resume` lets it, where the line dropped.
-pub(super) fn goes_on(
+/// Whether the work continues without a dashboard after `exit`; `None` means that there was
+/// no dashboard.
+///
+/// After a hangup the program leaves its terminal, and `resume` is called if the work
+/// continues.
+pub(super) fn continues(
     exit: Option<Exit>,
-    ended: &Termination,
+    termination: &Termination,
     on_hangup: OnHangup,
     resume: impl FnOnce(),
 ) -> bool {
     match exit {
-        None => true,
+        None => return true,
         Some(Exit::HungUp) => {
-            // A run without a terminal is not worth less for a system without /dev/null.
+            // Fails only without /dev/null, and then the work goes on all the same.
             let _detached = terminal::detach();
-            match on_hangup {
-                OnHangup::Detach => resume(),
-                OnHangup::Stop => ended.by(SIGHUP),
+            if on_hangup == OnHangup::Detach {
+                resume();
+                return true;
             }
-            on_hangup == OnHangup::Detach
+            termination.record(SIGHUP);
         }
-        Some(Exit::Signal(signal)) => {
-            ended.by(signal);
-            false
-        }
-        Some(_) => false,
+        Some(Exit::Signal(signal)) => termination.record(signal),
+        Some(_) => {}
     }
+    false
 }
 
-/// Follows a run to its end without a dashboard, and through the drop of the line if it
-/// `survives` that.
+/// Follows a run to its end with a progress bar.
 fn headless(
     run: &Run,
     signals: SignalWatcher,
-    ended: &Termination,
-    survives: bool,
+    termination: &Termination,
+    survives_hangup: bool,
 ) -> Result<(), Failure> {
     let controls = run.controls.clone();
-    signals.stop(ended, survives, move || controls.stop())?;
+    signals.stop_on_signals(termination, survives_hangup, move || controls.stop())?;
     let evolution = &run.scenario.evolution;
     let (limit, population) = (evolution.generation_limit, evolution.population_size);
     progress::follow(&run.events, limit, population);
     Ok(())
 }
 
-/// Ends the program after a time, if it is still there: it was asked to end, the run is
-/// saved, and a terminal that takes nothing must not hold up what is left to say.
+/// Ends the program after `time` if it still runs.
+///
+/// It was asked to end and the run is saved: a terminal that accepts no output must not keep
+/// it alive.
 pub(super) fn end_within(time: Duration, code: i32) -> Result<(), Failure> {
-    thread::Builder::new()
-        .name(String::from("patience"))
-        .spawn(move || {
-            thread::sleep(time);
-            signal_hook::low_level::exit(code);
-        })?;
-    Ok(())
+    spawn("patience", move || {
+        thread::sleep(time);
+        signal_hook::low_level::exit(code);
+    })
 }
 
-/// Lets another process without a terminal go on with a run that was stopped.
+/// Lets another process, without a terminal, resume the stopped run.
 fn hand_over(outcome: &Outcome, execution: &ExecutionArgs) -> CommandResult {
     let folder = &outcome.run_dir;
     let mut command = Command::new(std::env::current_exe()?);
     command.args(execution.resume_headless());
     command.arg("--").arg(Path::new(folder));
-    // A job of its own: what the shell does to its jobs is not meant for it.
+    // A process group of its own, out of reach of the shell's job control.
     command.process_group(0);
     let null = Stdio::null;
     let process = command.stdin(null()).stdout(null()).stderr(null()).spawn();
     let process = process.map_err(|error| {
-        format!("no process can go on with the run ({error}); do so with: maxq-lab resume {folder}")
+        format!(
+            "cannot start a process for the run ({error}); resume with: maxq-lab resume {folder}"
+        )
     })?;
     output::message(&format!(
-        "process {} goes on with the run; look at it with: maxq-lab watch {folder}",
+        "process {} continues the run; watch it with: maxq-lab watch {folder}",
         process.id()
     ));
     Ok(ExitCode::SUCCESS)
 }
 
-/// A result, for people.
+/// The result as text.
 fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
     let Outcome {
         generations,
@@ -188,16 +180,16 @@ fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
             counted(*generations, "generation")
         ),
         format!(
-            "{control_steps} control steps in all, {wall_seconds:.2} s now, in {}",
+            "{control_steps} control steps, {wall_seconds:.2} s in this session, saved in {}",
             outcome.run_dir
         ),
     ];
-    // A result must not pass for that of the embedded scenario whose name it has.
+    // Changed settings are named, so that the result does not pass for the built-in scenario's.
     let changed = in_words(&departures(scenario));
     lines.extend(changed.map(|changed| format!("changed: {changed}")));
     if let Some(best) = &outcome.best {
         lines.push(format!(
-            "{} {}: {:.1} time steps a trial, {} composite and {}",
+            "{} {}: {:.1} time steps per trial, {} composite and {}",
             first(scenario.evolution.selection),
             best.id,
             best.fitness,
@@ -205,41 +197,35 @@ fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
             counted(best.primitives.len() as u64, "primitive subtask")
         ));
         lines.push(String::new());
-        lines.extend(super::tree::with_tree(
-            scenario,
-            &best.tree,
-            |tree, catalogue| draw(tree, catalogue, Glyphs::of_locale()),
-        )?);
-        lines.push(String::new());
-        for (index, primitives) in best.primitives_by_state_type.iter().enumerate() {
-            lines.push(format!(
-                "state type {}: {}",
-                index + 1,
-                primitives.join(", ")
-            ));
-        }
-        lines.push(format!("\n{}", caution(scenario.evolution.selection)));
+        lines.extend(with_tree(scenario, &best.tree, |tree, catalogue| {
+            draw(tree, catalogue, Glyphs::of_locale())
+        })?);
+        lines.push(format!(
+            "\n{}\n{}",
+            by_state_type(&best.primitives_by_state_type),
+            caution(scenario.evolution.selection)
+        ));
     }
     Ok(lines.join("\n") + "\n")
 }
 
-/// What the individual of rank 1 is.
+/// What rank 1 means.
 fn first(selection: Selection) -> &'static str {
     match selection {
         Selection::Fitness => "best individual",
-        Selection::Random => "individual that chance ranked first,",
+        Selection::Random => "individual ranked first at random,",
     }
 }
 
-/// What to bear in mind about it.
+/// How to read the result.
 fn caution(selection: Selection) -> &'static str {
     match selection {
         Selection::Fitness => {
-            "The best of many is also the luckiest; 'maxq-lab evaluate' tells how good its \
-             structure is."
+            "The best of many individuals is also the luckiest: run 'maxq-lab evaluate' to measure \
+             its structure."
         }
         Selection::Random => {
-            "Chance took the place of fitness here: no individual was selected for being good."
+            "Selection was random in this run: no individual was selected for its fitness."
         }
     }
 }

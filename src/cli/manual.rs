@@ -1,4 +1,4 @@
-//! Completions for shells, and the manual page.
+//! `maxq-lab completions` and `maxq-lab manual`.
 
 use std::io;
 use std::process::ExitCode;
@@ -8,27 +8,27 @@ use clap::CommandFactory;
 use super::Cli;
 use super::output::{self, CommandResult};
 
-/// Print completions for a shell.
+/// Print a shell completion script.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   maxq-lab completions bash > ~/.local/share/bash-completion/completions/maxq-lab
-  maxq-lab completions zsh > ~/.zfunc/_maxq-lab           a folder that is in $fpath
+  maxq-lab completions zsh > ~/.zfunc/_maxq-lab           a directory in $fpath
   maxq-lab completions fish > ~/.config/fish/completions/maxq-lab.fish")]
 pub(super) struct CompletionArgs {
-    /// The shell.
+    /// Shell.
     #[arg(value_enum)]
     shell: clap_complete::Shell,
 }
 
-/// Print the manual pages, in roff.
+/// Print the manual pages in roff format.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Example:
   maxq-lab manual | man -l -")]
 pub(super) struct ManualArgs {}
 
-/// Carries out `completions`.
+/// Runs `maxq-lab completions`.
 pub(super) fn completions(args: &CompletionArgs) -> CommandResult {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "maxq-lab", &mut script);
@@ -36,7 +36,7 @@ pub(super) fn completions(args: &CompletionArgs) -> CommandResult {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Carries out `manual`: the page of the program, then those of its commands.
+/// Runs `maxq-lab manual`: prints the page of the program, then those of its commands.
 pub(super) fn manual(_args: &ManualArgs) -> CommandResult {
     let mut command = Cli::command();
     command.build();
@@ -46,10 +46,10 @@ pub(super) fn manual(_args: &ManualArgs) -> CommandResult {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the page of a command, then those of the commands that it has.
+/// Writes the page of a command, then those of its subcommands.
 fn render(command: &clap::Command, pages: &mut Vec<u8>) -> io::Result<()> {
     clap_mangen::Man::new(command.clone()).render(pages)?;
-    // What every command has by itself needs no page.
+    // Clap adds `help` to every command; it needs no page.
     let commands = command.get_subcommands();
     let mut commands = commands.filter(|inner| inner.get_name() != "help");
     commands.try_for_each(|inner| render(inner, pages))

@@ -1,7 +1,4 @@
-//! The command line, one file a command.
-//!
-//! Results go to standard output and stay pipeable; messages and progress go to
-//! standard error, progress only where that is a terminal.
+#![doc = include_str!("README.md")]
 
 mod answer;
 mod args;
@@ -29,13 +26,15 @@ use clap::{Parser, Subcommand};
 
 use output::Failure;
 
-/// Evolve the task hierarchies of hierarchical reinforcement learning.
+/// Evolve task hierarchies for hierarchical reinforcement learning.
 ///
-/// A population of MAXQ hierarchies competes inside one simulated robot. Each learns by
-/// MAXQ-Q while it forages - find a battery, capture it, bring it to the nest -, and
-/// typed crossover mixes the best (S. Elfwing, KTH 2003). The same scenario and seed give
-/// the same bits, whatever the machine, the number of threads, or how often the run was
-/// interrupted. On a terminal a dashboard shows it all: watch, pause, take apart, step, replay.
+/// A population of MAXQ hierarchies shares one simulated agent. Each individual learns by MAXQ-Q
+/// while it acts, and typed crossover recombines the fittest (S. Elfwing, KTH 2003). In the
+/// thesis's task, foraging, a robot finds a battery, captures it and carries it to the nest.
+///
+/// The same scenario and seed give bit for bit the same result on every machine, with any
+/// number of threads and however often the run is interrupted. On a terminal, a dashboard shows
+/// everything live: pause, inspect, step and replay.
 #[derive(Debug, Parser)]
 #[command(name = "maxq-lab", version, max_term_width = 100, after_help = AFTER_HELP)]
 struct Cli {
@@ -44,17 +43,18 @@ struct Cli {
 }
 
 const AFTER_HELP: &str = "\
-Begin with:
-  maxq-lab scenarios                        what there is to run
-  maxq-lab run smoke                        the whole method, in less than a second
+First steps:
+  maxq-lab scenarios                        list what can be run
+  maxq-lab run smoke                        the whole method in less than a second
   maxq-lab run environment-1                an experiment of the thesis
   maxq-lab evaluate environment-1 --tree '(Root Wander ApproachBattery ApproachNest)'
 
 Exit status:
-  0      done, or handed over to another process
-  1      an error, told on standard error
-  2      wrong arguments
-  128+N  ended by signal N, 130 by hand too: what was begun is saved, and can be gone on with";
+  0      success, or the run was handed over to a background process
+  1      an error, reported on standard error
+  2      invalid arguments
+  128+N  ended by signal N (130 also when stopped from the dashboard); progress is saved and can
+         be resumed";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -77,14 +77,14 @@ enum Command {
     Manual(manual::ManualArgs),
 }
 
-/// Runs the program with the process's arguments.
+/// Runs the program with the arguments of the process and returns its exit code.
 #[must_use]
 pub fn main() -> ExitCode {
     let command = match Cli::try_parse() {
         Ok(cli) => cli.command,
-        Err(error) => return no_command(&error),
+        Err(error) => return print_clap_message(&error),
     };
-    let done = match command {
+    let result = match command {
         Command::Run(args) => run::main(args),
         Command::Resume(args) => run::resume_main(&args),
         Command::Watch(args) => watch::main(&args),
@@ -102,7 +102,7 @@ pub fn main() -> ExitCode {
         Command::Completions(args) => manual::completions(&args),
         Command::Manual(args) => manual::manual(&args),
     };
-    match done {
+    match result {
         Ok(code) => code,
         Err(Failure::BrokenPipe) => ExitCode::SUCCESS,
         Err(Failure::Message(message)) => {
@@ -112,13 +112,14 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Prints what clap has to say instead of a command: help and version as they are, an
-/// error with the control characters of the arguments that it quotes made visible.
-fn no_command(error: &clap::Error) -> ExitCode {
+/// Prints help, the version, or an error of the arguments.
+///
+/// An error quotes arguments, so its control characters are escaped.
+fn print_clap_message(error: &clap::Error) -> ExitCode {
     if error.use_stderr() {
         output::message(error.render().to_string().trim_end());
     } else {
-        // Nothing can be done about a standard output that cannot be written.
+        // A standard output that cannot be written is no failure of this command.
         let _ = error.print();
     }
     u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)

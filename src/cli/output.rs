@@ -1,4 +1,4 @@
-//! Text and JSON on standard output, messages on standard error.
+//! Results on standard output, as text or JSON; messages on standard error.
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -8,12 +8,12 @@ use serde::Serialize;
 
 use crate::files::visible;
 
-/// Why a command did not do what it should.
+/// Why a command failed.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// Whoever read our output has gone: nothing to say, nobody to say it to.
+    /// The reader of standard output has closed it; nothing is reported.
     BrokenPipe,
-    /// Something to be said on standard error.
+    /// A message for standard error.
     Message(String),
 }
 
@@ -23,26 +23,26 @@ impl<E: Display> From<E> for Failure {
     }
 }
 
-/// What a command comes to.
+/// The exit code of a command, or why it failed.
 pub(super) type CommandResult = Result<std::process::ExitCode, Failure>;
 
-/// How a command reports.
+/// The format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
-    /// For people.
+    /// Text to read.
     #[default]
     Text,
-    /// For programs.
+    /// JSON for programs.
     Json,
 }
 
-/// A number of things, in words: one without the plural's s.
+/// A number with its noun: `1 repeat`, `2 repeats`.
 pub(super) fn counted(number: u64, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {thing}{plural}")
 }
 
-/// Writes text to standard output, its control characters made visible.
+/// Writes text to standard output, with control characters escaped.
 pub(super) fn text(text: &str) -> Result<(), Failure> {
     raw(visible(text).as_bytes())
 }
@@ -53,13 +53,13 @@ pub(super) fn json(value: &impl Serialize) -> Result<(), Failure> {
     raw((ascii_controls(&text) + "\n").as_bytes())
 }
 
-/// Writes a message to standard error, its control characters made visible.
+/// Writes a message to standard error, with control characters escaped.
 pub(super) fn message(text: &str) {
-    // Nothing can be done about a standard error that cannot be written.
+    // There is nowhere left to report an error.
     let _ = writeln!(io::stderr(), "{}", visible(text));
 }
 
-/// Writes bytes of this program's own making to standard output.
+/// Writes bytes to standard output as they are; they must not quote input.
 pub(super) fn raw(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
@@ -69,7 +69,7 @@ pub(super) fn raw(bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
-/// JSON escapes the first 32 control characters; this escapes the others.
+/// Escapes the control characters that JSON leaves as they are (U+007F to U+009F).
 fn ascii_controls(json: &str) -> String {
     let escaped = |c: char| match c {
         '\u{7f}'..='\u{9f}' => format!("\\u{:04x}", u32::from(c)).chars().collect(),
@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn control_characters_become_visible() {
+    fn control_characters_are_escaped() {
         assert_eq!(
             visible("a\u{1b}[31mb\nc\u{9b}2J"),
             "a\\u{1b}[31mb\nc\\u{9b}2J"

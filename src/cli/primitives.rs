@@ -1,19 +1,19 @@
-//! `maxq-lab primitives`: what the primitive subtasks have learned (Thesis Figure 4.3).
+//! `maxq-lab primitives`: trains the primitive subtasks and prints their action values.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::answer::{AnswerArgs, Means};
+use super::answer::{AnswerArgs, Resources};
 use super::args::ScenarioArgs;
 use super::output::{CommandResult, Failure};
 use crate::worlds::Kind;
 
-/// Train the primitive subtasks and show what they have learned.
+/// Train the primitive subtasks and print their action values.
 ///
-/// For typical inputs: the greedy action and the value of every action (Thesis Figure 4.3).
-/// Actions are numbered as in Thesis Table 4.4.
+/// Prints the greedy action and the value of every action for typical inputs (Thesis Figure
+/// 4.3). Actions are numbered as in Thesis Table 4.4.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -28,7 +28,7 @@ pub(super) struct Args {
     answer: AnswerArgs,
 }
 
-/// What the primitive subtasks have learned.
+/// The trained primitive subtasks.
 #[derive(Serialize)]
 pub(super) struct Report {
     scenario: String,
@@ -43,7 +43,7 @@ struct Primitive {
     rows: Vec<Row>,
 }
 
-/// One input and what the subtask does there.
+/// The values of one input.
 #[derive(Serialize)]
 struct Row {
     #[serde(skip)]
@@ -54,26 +54,25 @@ struct Row {
     q: Vec<f32>,
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab primitives`.
 pub(super) fn main(args: Args) -> CommandResult {
     let scenario = args.scenario.load()?;
     args.answer
-        .answer(scenario, |means| args.compute(&means), describe)
+        .answer(scenario, |resources| args.compute(&resources), describe)
 }
 
 impl Args {
-    fn compute(&self, means: &Means<'_>) -> Result<Report, Failure> {
-        let Means {
+    fn compute(&self, resources: &Resources<'_>) -> Result<Report, Failure> {
+        let Resources {
             experiment,
             workers,
             gate,
-        } = *means;
+        } = *resources;
         if !experiment.scenario().world.trains_primitives() {
             let name = &experiment.scenario().name;
             return Err(format!(
-                "{name}: found primitive subtasks that are not trained, but learn with each \
-                 individual; allowed: a world whose primitive subtasks are trained, such as \
-                 foraging"
+                "{name}: found primitive subtasks that are not trained in advance (each individual \
+                 learns its own); allowed: a world that trains them, such as foraging"
             )
             .into());
         }
@@ -113,36 +112,22 @@ fn describe(report: &Report) -> String {
     for primitive in &report.primitives {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "\n{}", primitive.subtask);
-        let width = primitive
-            .rows
-            .iter()
-            .map(|row| row.label.len())
-            .max()
-            .unwrap_or(0);
+        let labels = primitive.rows.iter().map(|row| row.label.len());
+        let width = labels.max().unwrap_or(0);
         let columns = primitive.actions.iter().enumerate();
-        let columns = columns.map(|(i, action)| format!("{:>14}", format!("{} {action}", i + 1)));
-        let _ = writeln!(
-            text,
-            "  {:width$}  greedy{}",
-            "",
-            columns.collect::<String>()
-        );
+        let header = columns.map(|(i, action)| format!("{:>14}", format!("{} {action}", i + 1)));
+        let header: String = header.collect();
+        let _ = writeln!(text, "  {:width$}  greedy{header}", "");
         for row in &primitive.rows {
-            let values = row
-                .q
-                .iter()
-                .map(|q| format!("{q:>14.3}"))
-                .collect::<String>();
-            let _ = writeln!(
-                text,
-                "  {:width$}  {:>6}{values}",
-                row.label, row.greedy_action
-            );
+            let values: String = row.q.iter().map(|q| format!("{q:>14.3}")).collect();
+            let (label, greedy) = (&row.label, row.greedy_action);
+            let _ = writeln!(text, "  {label:width$}  {greedy:>6}{values}");
         }
     }
     text
 }
 
+/// The index of the first largest value.
 fn greedy(values: &[f32]) -> usize {
     let mut best = 0;
     for (index, value) in values.iter().enumerate() {

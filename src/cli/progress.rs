@@ -1,4 +1,4 @@
-//! Progress on a terminal.
+//! Progress bars on standard error, drawn only where that is a terminal.
 
 use std::io::{IsTerminal, stderr};
 use std::time::Duration;
@@ -9,25 +9,25 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::evolution::GenerationRecord;
 use crate::lab::Event;
 
-/// Follows a run to its end; draws a bar where standard error is a terminal.
+/// Follows a run to its end with a bar.
 pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize) {
-    let bar = bar(limit * population as u64, true);
+    let individuals = |generations: u64| generations * population as u64;
+    let bar = hidden(
+        individuals(limit),
+        "{bar:10} {elapsed}, at most {eta} left  {wide_msg}",
+    );
+    show(&bar);
     let mut message = String::from("training the primitive subtasks");
     for event in events {
         match event {
             Event::Generation(record) => {
                 message = describe(&record);
-                bar.set_position(record.generation * population as u64);
+                bar.set_position(individuals(record.generation));
             }
             Event::Progress {
-                generation,
-                lived,
-                population,
-                ..
-            } if generation > 0 => {
-                bar.set_position((generation - 1) * population as u64 + lived as u64);
-            }
-            Event::Ended { generations, .. } => bar.set_length(generations * population as u64),
+                generation, lived, ..
+            } if generation > 0 => bar.set_position(individuals(generation - 1) + lived as u64),
+            Event::Ended { generations, .. } => bar.set_length(individuals(generations)),
             _ => {}
         }
         bar.set_message(message.clone());
@@ -35,13 +35,9 @@ pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize) {
     bar.finish_and_clear();
 }
 
-/// A bar on standard error, drawn only where that is a terminal and `shown` says so.
-pub(super) fn bar(length: u64, shown: bool) -> ProgressBar {
+/// A bar that is not drawn yet.
+pub(super) fn hidden(length: u64, template: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
-    if shown {
-        appear(&bar);
-    }
-    let template = "{bar:10} {elapsed}, at most {eta} left  {wide_msg}";
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
@@ -49,15 +45,18 @@ pub(super) fn bar(length: u64, shown: bool) -> ProgressBar {
     bar
 }
 
-/// A bar for repeats of the same.
+/// A bar that counts finished repeats.
 pub(super) fn repeats(number: u64) -> ProgressBar {
-    let bar = bar(number, true);
-    bar.set_message("repeats");
+    let bar = hidden(
+        number,
+        "{bar:20} {pos} of {len} repeats, {elapsed}, about {eta} left",
+    );
+    show(&bar);
     bar
 }
 
-/// Draws a bar on standard error from now on, where that is a terminal.
-pub(super) fn appear(bar: &ProgressBar) {
+/// Draws a bar from now on.
+pub(super) fn show(bar: &ProgressBar) {
     if stderr().is_terminal() {
         bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
     }
@@ -67,7 +66,7 @@ fn describe(record: &GenerationRecord) -> String {
     let middle = record.individuals.len() / 2;
     let mean = |rank| record.mean_trial_steps(rank).unwrap_or(f64::NAN);
     format!(
-        "generation {}: best {:.0}, rank {middle} {:.0} steps",
+        "generation {}: {:.0} steps per trial (best), {:.0} (rank {middle})",
         record.generation,
         mean(1),
         mean(middle)

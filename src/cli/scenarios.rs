@@ -1,4 +1,4 @@
-//! `maxq-lab scenarios` and `maxq-lab schema`.
+//! `maxq-lab scenarios` and `maxq-lab schema`: the files that users write.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -10,16 +10,16 @@ use super::output::{self, CommandResult, Format};
 use crate::report::Plan;
 use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Scenario};
 
-/// List the embedded scenarios and plans of studies, or print one.
+/// List the built-in scenarios and study plans, or print one.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Example:
-  maxq-lab scenarios environment-2 > my-scenario.json     a file to start from")]
+  maxq-lab scenarios environment-2 > my-scenario.json     a copy to edit")]
 pub(super) struct Args {
-    /// Print the file of this scenario, or of this plan, instead.
+    /// Print the file of this scenario or plan.
     name: Option<String>,
 
-    /// How to report the list.
+    /// Format of the list.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -38,20 +38,15 @@ enum Kind {
     Plan,
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab scenarios`.
 pub(super) fn main(args: &Args) -> CommandResult {
     if let Some(name) = &args.name {
-        let embedded = EMBEDDED
-            .iter()
-            .chain(EMBEDDED_PLANS)
-            .find(|embedded| embedded.name == name);
-        let names: Vec<_> = EMBEDDED
-            .iter()
-            .chain(EMBEDDED_PLANS)
-            .map(|embedded| embedded.name)
-            .collect();
-        let embedded = embedded
-            .ok_or_else(|| format!("no scenario {name:?}; allowed: {}", names.join(", ")))?;
+        let all = || EMBEDDED.iter().chain(EMBEDDED_PLANS);
+        let Some(embedded) = all().find(|embedded| embedded.name == name) else {
+            let names: Vec<_> = all().map(|embedded| embedded.name).collect();
+            let allowed = names.join(", ");
+            return Err(format!("NAME: found {name:?}; allowed: {allowed}").into());
+        };
         output::text(embedded.json)?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -62,7 +57,7 @@ pub(super) fn main(args: &Args) -> CommandResult {
             let mut kind = Kind::Scenario;
             for row in rows {
                 if row.kind != kind {
-                    output::text("\nplans, for 'maxq-lab study':\n")?;
+                    output::text("\nPlans, for 'maxq-lab study':\n")?;
                     kind = row.kind;
                 }
                 output::text(&format!("{:15} {}\n", row.name, row.description))?;
@@ -91,32 +86,32 @@ fn rows() -> Result<Vec<Row>, Box<dyn std::error::Error>> {
     scenarios.chain(plans).collect()
 }
 
-/// Print the JSON Schema of scenario files, or of plans.
+/// Print the JSON Schema of scenario files or of study plans.
 ///
-/// Editors use it to complete and check these files; 'maxq-lab check' also checks what a
-/// schema cannot say.
+/// Editors use a schema to complete and validate these files. 'maxq-lab check' also enforces
+/// rules that a schema cannot express.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   maxq-lab schema > scenario.schema.json
   maxq-lab schema --of plan > plan.schema.json")]
 pub(super) struct SchemaArgs {
-    /// What the schema is of.
+    /// Kind of file.
     #[arg(long, value_enum, default_value_t)]
     of: FileKind,
 }
 
-/// A kind of file.
+/// A kind of file that has a schema.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum FileKind {
     /// A scenario.
     #[default]
     Scenario,
-    /// The plan of a study.
+    /// A study plan.
     Plan,
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab schema`.
 pub(super) fn schema(args: &SchemaArgs) -> CommandResult {
     output::json(&match args.of {
         FileKind::Scenario => Scenario::schema(),

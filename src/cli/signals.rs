@@ -1,4 +1,4 @@
-//! Signals that end the program.
+//! The signals that end the program: SIGINT, SIGTERM and SIGHUP.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, Ordering};
@@ -11,102 +11,87 @@ use signal_hook::iterator::Signals;
 use super::output::Failure;
 use crate::dashboard::terminal;
 
-/// Signals that end the program, caught from now on; they wait to be heard.
+/// Catches the signals that end the program and queues them.
 #[derive(Debug)]
 pub(super) struct SignalWatcher {
-    /// The signals, in the order in which they came.
-    pub(super) heard: Receiver<i32>,
+    /// The signals, in the order in which they arrived.
+    pub(super) received: Receiver<i32>,
 }
 
-/// The signal that ended the program.
+/// The signal that ended the program, if any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Termination {
     signal: Arc<AtomicI32>,
 }
 
 impl SignalWatcher {
-    /// Catches SIGINT, SIGTERM and SIGHUP; a second SIGINT or SIGTERM ends the program at
-    /// once, which loses no more than a crash would: nothing. SIGHUP comes twice when a line
-    /// drops, from the system and from the shell, and means the same both times.
-    pub(super) fn now() -> Result<Self, Failure> {
-        let caught = match hangup_is_ignored() {
-            true => vec![SIGINT, SIGTERM],
-            false => vec![SIGINT, SIGTERM, SIGHUP],
-        };
-        let mut signals = Signals::new(caught)?;
-        let (sender, heard) = unbounded();
-        thread::Builder::new()
-            .name(String::from("signals"))
-            .spawn(move || {
-                let mut asked = false;
-                for signal in signals.forever() {
-                    if asked && signal != SIGHUP {
-                        terminal::restore();
-                        signal_hook::low_level::exit(128 + signal);
-                    }
-                    asked |= signal != SIGHUP;
-                    // Who does not listen is about to end anyway.
-                    let _ = sender.send(signal);
+    /// Starts to catch SIGINT, SIGTERM and, unless it is ignored, SIGHUP.
+    ///
+    /// A second SIGINT or SIGTERM ends the program at once. That loses nothing, because a
+    /// run survives a crash too. SIGHUP does not count: when a connection is lost it is sent
+    /// twice, by the system and by the shell.
+    pub(super) fn start() -> Result<Self, Failure> {
+        let mut watched = vec![SIGINT, SIGTERM];
+        if !hangup_is_ignored() {
+            watched.push(SIGHUP);
+        }
+        let mut signals = Signals::new(watched)?;
+        let (sender, received) = unbounded();
+        let watch = move || {
+            let mut interrupted = false;
+            for signal in signals.forever() {
+                if interrupted && signal != SIGHUP {
+                    terminal::restore();
+                    signal_hook::low_level::exit(128 + signal);
                 }
-            })?;
-        Ok(Self { heard })
+                interrupted |= signal != SIGHUP;
+                // Without a receiver the program is about to end anyway.
+                let _ = sender.send(signal);
+            }
+        };
+        spawn("signals", watch)?;
+        Ok(Self { received })
     }
 
-    /// Calls `stop` on every signal, those that wait already first; where the work `survives`
-    /// a line that drops, SIGHUP lets go of the terminal instead.
-    pub(super) fn stop(
+    /// Records every signal in `termination` and calls `stop`, starting with the signals that
+    /// are queued already.
+    ///
+    /// With `survives_hangup`, SIGHUP detaches the program from its terminal instead.
+    pub(super) fn stop_on_signals(
         self,
-        ended: &Termination,
-        survives: bool,
+        termination: &Termination,
+        survives_hangup: bool,
         stop: impl Fn() + Send + 'static,
     ) -> Result<(), Failure> {
-        let ended = ended.clone();
-        thread::Builder::new()
-            .name(String::from("ending"))
-            .spawn(move || {
-                for signal in &self.heard {
-                    if signal == SIGHUP && survives {
-                        // Work without a terminal is not worth less for a system without
-                        // /dev/null.
-                        let _detached = terminal::detach();
-                        continue;
-                    }
-                    ended.by(signal);
+        let termination = termination.clone();
+        spawn("ending", move || {
+            for signal in &self.received {
+                if signal == SIGHUP && survives_hangup {
+                    // Fails only without /dev/null, and then the work goes on all the same.
+                    let _detached = terminal::detach();
+                } else {
+                    termination.record(signal);
                     stop();
                 }
-            })?;
-        Ok(())
-    }
-
-    /// Calls `stop` on the first signal, the one that waits already if there is one.
-    pub(super) fn then(self, stop: impl FnOnce() + Send + 'static) -> Result<Termination, Failure> {
-        let ended = Termination::default();
-        let first = ended.clone();
-        thread::Builder::new()
-            .name(String::from("ending"))
-            .spawn(move || {
-                if let Ok(signal) = self.heard.recv() {
-                    first.by(signal);
-                    stop();
-                }
-            })?;
-        Ok(ended)
+            }
+        })
     }
 }
 
 impl Termination {
-    /// A signal ended the program.
-    pub(super) fn by(&self, signal: i32) {
+    /// Records the signal that ended the program.
+    pub(super) fn record(&self, signal: i32) {
         self.signal.store(signal, Ordering::SeqCst);
     }
 
-    /// A person ended the program, as Ctrl-C would: who waits for work that was not done, a
-    /// script say, must not take it for done.
-    pub(super) fn by_hand(&self) {
-        self.by(SIGINT);
+    /// Records that the user stopped unfinished work from the dashboard.
+    ///
+    /// This counts as Ctrl-C: a script must not take the work for finished.
+    pub(super) fn record_user_stop(&self) {
+        self.record(SIGINT);
     }
 
-    /// The exit code that tells which signal ended the program: 128 and its number.
+    /// The exit code for the recorded signal: 128 plus its number.
     pub(super) fn exit_code(&self) -> Option<u8> {
         match self.signal.load(Ordering::SeqCst) {
             0 => None,
@@ -115,9 +100,16 @@ impl Termination {
     }
 }
 
-/// Whether the program was started to survive a line that drops, as by `nohup`.
+/// Runs `work` in a thread with a name.
+pub(super) fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<(), Failure> {
+    thread::Builder::new().name(name.to_owned()).spawn(work)?;
+    Ok(())
+}
+
+/// Whether the program was started with SIGHUP ignored, as `nohup` does.
+///
+/// Only Linux tells; elsewhere SIGHUP is caught.
 fn hangup_is_ignored() -> bool {
-    // Where the system does not tell, SIGHUP is caught.
     let Ok(status) = std::fs::read_to_string("/proc/self/status") else {
         return false;
     };

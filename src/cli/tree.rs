@@ -1,5 +1,6 @@
-//! `maxq-lab tree`: look at hierarchies.
+//! `maxq-lab tree`: draws, checks, compares and exports hierarchies.
 
+use std::borrow::Borrow;
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
@@ -12,7 +13,7 @@ use crate::lab::experiment;
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 
-/// Examples for its help.
+/// The examples in the help of `maxq-lab tree`.
 pub(super) const EXAMPLES: &str = "\
 Examples:
   maxq-lab tree show '(Root Wander (Capture Avoid ApproachBattery) ApproachNest)'
@@ -21,63 +22,63 @@ Examples:
            '(Root Avoid ApproachBattery ApproachNest)'
   maxq-lab tree dot '(Root Wander ApproachBattery ApproachNest)' | dot -Tsvg > tree.svg";
 
-/// Look at hierarchies: draw, check, compare, export.
+/// Draw, check, compare or export hierarchies.
 ///
-/// A hierarchy is text: '(Root (Capture (FindBattery Wander) ApproachBattery) Wander
-/// ApproachNest)'. Its subtasks and rules are those of the scenario.
+/// A hierarchy is written as text: '(Root (Capture (FindBattery Wander) ApproachBattery) Wander
+/// ApproachNest)'. The scenario defines its subtasks and typing rules.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Draw a hierarchy and count what it is made of.
-    Show(One),
+    /// Draw a hierarchy and count its subtasks.
+    Show(TreeArgs),
     /// Check a hierarchy against the typing rules.
-    Check(One),
-    /// Measure the structural difference of two hierarchies (Thesis 4.5.2).
+    Check(TreeArgs),
+    /// Measure the structural difference between two hierarchies (Thesis 4.5.2).
     ///
-    /// It is 0 where they are alike, and the further below the more differs: each composite
-    /// subtask that only one of them has costs its weight, each primitive child that only one
-    /// of them has at a place costs 1. Their order does not matter.
+    /// The difference is 0 for equal hierarchies and negative otherwise. Each composite subtask
+    /// that only one of them has costs its weight, and each primitive child that only one of
+    /// them has at a place costs 1. The order of children does not matter.
     Diff {
-        /// The one hierarchy.
+        /// First hierarchy.
         a: String,
-        /// The other hierarchy.
+        /// Second hierarchy.
         b: String,
         #[command(flatten)]
-        format: TreeFormat,
+        options: TreeFormat,
     },
-    /// Write a hierarchy as Graphviz DOT.
+    /// Print a hierarchy in Graphviz DOT format.
     Dot {
-        /// The hierarchy.
+        /// Hierarchy, as text.
         tree: String,
-        /// The scenario whose subtasks and rules apply.
+        /// Scenario that defines the subtasks and typing rules.
         #[arg(long, default_value = "environment-1")]
         scenario: String,
     },
 }
 
 #[derive(Debug, Args)]
-pub(super) struct One {
-    /// The hierarchy.
+pub(super) struct TreeArgs {
+    /// Hierarchy, as text.
     tree: String,
     #[command(flatten)]
-    format: TreeFormat,
+    options: TreeFormat,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct TreeFormat {
-    /// The scenario whose subtasks and rules apply.
+    /// Scenario that defines the subtasks and typing rules.
     #[arg(long, default_value = "environment-1")]
     scenario: String,
-    /// TreeFormat to report.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab tree`.
 pub(super) fn main(command: Command) -> CommandResult {
     match command {
-        Command::Show(One { tree, format }) => show(&tree, &format)?,
-        Command::Check(One { tree, format }) => check(&tree, &format)?,
-        Command::Diff { a, b, format } => difference(&a, &b, &format)?,
+        Command::Show(TreeArgs { tree, options }) => show(&tree, &options)?,
+        Command::Check(TreeArgs { tree, options }) => check(&tree, &options)?,
+        Command::Diff { a, b, options } => difference(&a, &b, &options)?,
         Command::Dot { tree, scenario } => {
             let scenario = Scenario::load(&scenario)?;
             output::text(&with_tree(&scenario, &tree, to_dot)?)?;
@@ -86,35 +87,38 @@ pub(super) fn main(command: Command) -> CommandResult {
     Ok(ExitCode::SUCCESS)
 }
 
-fn show(text: &str, format: &TreeFormat) -> Result<(), Failure> {
-    let scenario = Scenario::load(&format.scenario)?;
+fn show(text: &str, options: &TreeFormat) -> Result<(), Failure> {
+    let scenario = Scenario::load(&options.scenario)?;
     let (summary, drawing) = with_tree(&scenario, text, |tree, catalogue| {
         (
             Summary::of(tree, catalogue),
             draw(tree, catalogue, Glyphs::of_locale()),
         )
     })?;
-    if format.format == Format::Json {
+    if options.format == Format::Json {
         return output::json(&summary);
     }
-    let by_type = summary.primitives_by_state_type.iter().enumerate();
-    let by_type: Vec<_> = by_type
-        .map(|(index, names)| format!("state type {}: {}", index + 1, names.join(", ")))
-        .collect();
     output::text(&format!(
-        "{}\n\ndepth {}, {} composite and {}\n{}\n",
+        "{}\n\ndepth {}, {} composite and {}\n{}",
         drawing.join("\n"),
         summary.depth,
         summary.composites,
         counted(summary.primitives.len() as u64, "primitive subtask"),
-        by_type.join("\n")
+        by_state_type(&summary.primitives_by_state_type)
     ))
 }
 
-fn check(text: &str, format: &TreeFormat) -> Result<(), Failure> {
-    let scenario = Scenario::load(&format.scenario)?;
+/// The primitive subtasks of every state type, a line each.
+pub(super) fn by_state_type<N: Borrow<str>>(primitives: &[Vec<N>]) -> String {
+    let lines = primitives.iter().enumerate();
+    let lines = lines.map(|(i, names)| format!("state type {}: {}\n", i + 1, names.join(", ")));
+    lines.collect()
+}
+
+fn check(text: &str, options: &TreeFormat) -> Result<(), Failure> {
+    let scenario = Scenario::load(&options.scenario)?;
     let tree = with_tree(&scenario, text, to_text)?;
-    match format.format {
+    match options.format {
         Format::Json => output::json(&json!({ "valid": true, "tree": tree })),
         Format::Text => output::text(&format!("valid: {tree}\n")),
     }
@@ -127,21 +131,21 @@ struct Difference {
     difference: i64,
 }
 
-fn difference(a: &str, b: &str, format: &TreeFormat) -> Result<(), Failure> {
-    let scenario = Scenario::load(&format.scenario)?;
+fn difference(a: &str, b: &str, options: &TreeFormat) -> Result<(), Failure> {
+    let scenario = Scenario::load(&options.scenario)?;
     let first = with_tree(&scenario, a, |tree, _| tree.clone())?;
     let report = with_tree(&scenario, b, |second, catalogue| Difference {
         a: to_text(&first, catalogue),
         b: to_text(second, catalogue),
         difference: structural_difference(&first, second, catalogue),
     })?;
-    match format.format {
+    match options.format {
         Format::Json => output::json(&report),
         Format::Text => output::text(&format!("{}\n", report.difference)),
     }
 }
 
-/// Reads a hierarchy by the rules of a scenario and does something with it.
+/// Reads a hierarchy by the rules of `scenario` and passes it to `what`, with the subtasks.
 pub(super) fn with_tree<T>(
     scenario: &Scenario,
     text: &str,

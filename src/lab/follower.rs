@@ -11,7 +11,7 @@ use super::checkpoint::MAX_CHECKPOINT_BYTES;
 use super::event::Event;
 use super::folder::RunFolder;
 use super::log::{LogError, read_event};
-use super::manifest::Manifest;
+use super::manifest::{Manifest, host_name};
 use super::news::{Life, News};
 use super::pulse::{BEAT, Beat, PULSE_FILE};
 use super::recording::Recording;
@@ -292,8 +292,7 @@ fn tell_beat(before: Option<&Beat>, beat: Beat, news: &mut Vec<News>) {
 
 /// Whether the process is known to be no more: it ran on this machine and is not there.
 fn is_dead(beat: &Beat) -> bool {
-    #[cfg(unix)]
-    if beat.host == gethostname::gethostname().to_string_lossy() {
+    if beat.host == host_name() {
         use rustix::io::Errno;
         use rustix::process::{Pid, test_kill_process};
         let process = i32::try_from(beat.process).ok().and_then(Pid::from_raw);

@@ -75,7 +75,7 @@ impl Invocation {
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: env!("MAXQ_LAB_COMMIT").to_owned(),
-            host: lossy(gethostname::gethostname()),
+            host: host_name(),
             command_line,
             time: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
             threads,
@@ -88,6 +88,12 @@ impl Invocation {
         let words = self.command_line.iter().map(|word| shell_word(word));
         words.collect::<Vec<_>>().join(" ")
     }
+}
+
+/// The name of this machine.
+pub(super) fn host_name() -> String {
+    let system = rustix::system::uname();
+    system.nodename().to_string_lossy().into_owned()
 }
 
 /// A word of a shell command line, quoted where it must be; control characters are written

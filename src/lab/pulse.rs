@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::controls::{Activity, Controls};
 use super::event::Event;
+use super::manifest::host_name;
 
 /// Name of the file in the run folder.
 pub(super) const PULSE_FILE: &str = "pulse.json";
@@ -90,7 +91,7 @@ fn beat(number: u64, controls: &Controls) -> Beat {
         event
     });
     Beat {
-        host: gethostname::gethostname().to_string_lossy().into_owned(),
+        host: host_name(),
         process: std::process::id(),
         beat: number,
         activity: controls.activity(),

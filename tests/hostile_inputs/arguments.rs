@@ -43,7 +43,7 @@ fn wrong_usage_is_refused_with_code_2() {
             &["0 is not in 1..=100000"],
         ),
         (
-            &["evaluate", "smoke", "--tree", "x", "--banks", "0"],
+            &["evaluate", "smoke", "--tree", "x", "--primitive-sets", "0"],
             &["0 is not in 1..=10000"],
         ),
         (

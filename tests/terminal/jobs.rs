@@ -47,7 +47,7 @@ fn ctrl_z_lends_the_terminal_to_the_shell_and_fg_takes_it_again() {
     }
     pty.press("qy");
     pty.wait_given_back();
-    pty.wait_for("go on with: maxq-lab resume");
+    pty.wait_for("resume with: maxq-lab resume");
     place.assert_saved();
 }
 
@@ -70,7 +70,7 @@ fn in_the_background_evolution_goes_on_and_the_terminal_is_the_shells() {
     pty.press("p");
     pty.wait_for("PAUSED");
     pty.press("qy");
-    pty.wait_for("go on with: maxq-lab resume");
+    pty.wait_for("resume with: maxq-lab resume");
     pty.wait_given_back();
     place.assert_saved();
 }
@@ -88,7 +88,7 @@ fn started_in_the_background_it_waits_for_the_terminal_and_evolution_does_not() 
     pty.press("fg\n");
     pty.wait_for("RUNNING");
     pty.press("qy");
-    pty.wait_for("go on with: maxq-lab resume");
+    pty.wait_for("resume with: maxq-lab resume");
     pty.wait_given_back();
 }
 

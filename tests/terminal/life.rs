@@ -28,7 +28,7 @@ fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
     pty.press("n");
     pty.wait_gone("Save the run and leave?");
     leave(&mut pty);
-    pty.wait_for("go on with: maxq-lab resume");
+    pty.wait_for("resume with: maxq-lab resume");
     place.assert_saved();
 
     let mut pty = place.on("resume");
@@ -96,9 +96,9 @@ fn a_run_is_handed_over_to_a_process_without_a_terminal() {
     pty.wait_for("let the run go on without a terminal");
     pty.press("d");
     wait_for_good_end(&mut pty, 0);
-    pty.wait_for("goes on with the run");
+    pty.wait_for("continues the run");
     let screen = pty.screen();
-    let before = screen.split(" goes on with the run").next().unwrap();
+    let before = screen.split(" continues the run").next().unwrap();
     let process: u32 = before.rsplit(' ').next().unwrap().parse().unwrap();
     pty.hang_up();
     place.wait_for_evolution();

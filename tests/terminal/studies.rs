@@ -99,7 +99,7 @@ fn a_study_is_left_and_gone_on_with() {
     wait_until("the second run", || second.join("run.json").exists());
     pty.signal("TERM");
     wait_for_good_end(&mut pty, 143);
-    pty.wait_for("the same command goes on");
+    pty.wait_for("the same command to resume");
 
     let mut pty = start((120, 40));
     pty.wait_for("20 done");

@@ -1,6 +1,6 @@
-//! `maxq-lab study`: many runs, how far they are, what comes out.
+//! `maxq-lab study`: many runs, their progress and their report.
 
-mod elsewhere;
+mod distribute;
 mod progress;
 mod runs;
 mod status;
@@ -17,61 +17,61 @@ use crate::lab::Keep;
 use crate::report::{Arm, Base, Numbers, Plan, Study};
 use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Embedded};
 
-/// Do many runs: scenarios, arms and seeds of a plan.
+/// Run many seeds of scenarios and compare them.
 ///
-/// Every scenario, arm and seed gets a run folder of its own, DIR/SCENARIO/ARM/seed-N. Runs
-/// that are done are skipped, runs that were broken off are gone on with, as many at a
-/// time as there are processors, each on one thread. Ending this at any moment and starting
-/// it again gives the same bytes. On a terminal a table shows the runs, and opens any of them in
-/// the dashboard: press ? there. When a run is over, the structure of its winner is
-/// evaluated anew: fresh hierarchies, fresh trials, freshly trained primitive subtasks.
+/// A study runs every combination of scenario, arm and seed, each in its own folder:
+/// DIR/SCENARIO/ARM/seed-N. It runs as many at a time as there are processors, each on one
+/// thread. Finished runs are skipped and interrupted runs are resumed, so a study can be stopped
+/// at any moment and started again, with the same bytes as result. On a terminal, a table shows
+/// the runs and opens any of them in the dashboard; press ? there for help. When a run ends,
+/// the structure of its best individual is evaluated again: with new hierarchies, new trials and
+/// newly trained primitive subtasks.
 ///
-/// Arms: evolved; random_selection (chance in the place of fitness: the control that tells
-/// selection from drift); random_choice (composite subtasks choose uniformly: tells what
-/// their learning adds); hand_designed (the complete hierarchy, learning only); random_search
-/// (random hierarchies in the place of offspring); no_learning_inheritance (Darwinian);
-/// flat (a root that chooses among all primitive subtasks). hand_designed, random_search and
-/// flat get as many generations as the evolved run of the same seed.
+/// Arms: evolved; random_selection (selection ignores fitness: the control that separates
+/// selection from drift); random_choice (composite subtasks choose uniformly: shows what their
+/// learning adds); hand_designed (the complete hierarchy, learning only); random_search (random
+/// hierarchies instead of offspring); no_learning_inheritance (Darwinian: offspring inherit no
+/// learned values); flat (a root that chooses among all primitive subtasks). hand_designed,
+/// random_search and flat run for as many generations as the evolved run of the same seed.
 #[derive(Debug, clap::Args)]
 #[command(
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     after_help = "\
 Examples:
-  maxq-lab study thesis --out studies/thesis               the study of the thesis's claims
+  maxq-lab study thesis --out studies/thesis               test the claims of the thesis
   maxq-lab study environment-1 environment-2 --seeds 1..10 --arms evolved,flat --out mine
-  maxq-lab study studies/thesis                            go on with a study
-  maxq-lab study status studies/thesis                     at any time
-  maxq-lab study watch studies/thesis                      live, as a table of runs to open
-  maxq-lab study report studies/thesis                     what comes out"
+  maxq-lab study studies/thesis                            resume a study
+  maxq-lab study status studies/thesis                     show its progress
+  maxq-lab study watch studies/thesis                      watch it live
+  maxq-lab study report studies/thesis                     write its report"
 )]
 pub(super) struct Args {
     #[command(subcommand)]
     command: Option<Command>,
 
     #[command(flatten)]
-    what: What,
+    study: StudyArgs,
 
-    /// Runs to do: a number, a range of numbers, or SCENARIO/ARM/seed-N; may be repeated
-    /// [default: all]. 'study plan' lists them.
+    /// Do only these runs: a number, a range of numbers, or SCENARIO/ARM/seed-N; may be repeated.
+    ///
+    /// 'maxq-lab study commands' lists the runs in order.
     #[arg(long, value_name = "RUN")]
     only: Vec<String>,
 
-    /// Runs at a time; 0 means one for each processor.
+    /// Number of runs at a time; 0 means one per processor.
     #[arg(long, short, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     jobs: u16,
 
-    /// Checkpoints kept of every run: all, none, or every N-th generation's.
+    /// Which checkpoints to keep of every run: all, none, or one every N generations.
     #[arg(long, value_name = "all|none|N", default_value = "none")]
     keep: Keep,
 
-    /// Open no table of the runs, although there is a terminal; a bar on standard error shows
-    /// the progress.
+    /// Show a progress bar instead of the table of runs.
     #[arg(long)]
     headless: bool,
 
-    /// What becomes of the study when the line drops: it goes on without a terminal, or is
-    /// saved and ended.
+    /// What to do when the terminal is lost (SIGHUP): continue without one, or save and exit.
     #[arg(long, value_enum, default_value_t)]
     on_hangup: OnHangup,
 
@@ -79,36 +79,36 @@ pub(super) struct Args {
     dashboard: DashboardArgs,
 }
 
-/// A study: what to run and where.
+/// What a study runs, and where.
 #[derive(Clone, Debug, clap::Args)]
-pub(super) struct What {
-    /// A plan (a file, or the name of an embedded one), or the folder of a study to go on
-    /// with, or scenarios (files, or names of embedded ones).
+pub(super) struct StudyArgs {
+    /// A study plan (a file or a built-in name), the folder of a study to resume, or scenarios
+    /// (files or built-in names).
     #[arg(required = true, value_name = "PLAN|DIR|SCENARIO")]
     what: Vec<String>,
 
-    /// Seeds for scenarios: numbers and ranges, both ends counted; a plan has its own
-    /// [default: 1..10].
+    /// Seeds, for scenarios: numbers and inclusive ranges, such as 1..10,42 [default: 1..10; a
+    /// plan has its own].
     #[arg(long, value_name = "A..B")]
     seeds: Option<Numbers>,
 
-    /// Arms for scenarios; a plan has its own [default: evolved,random_selection].
+    /// Arms, for scenarios [default: evolved,random_selection; a plan has its own].
     #[arg(long, value_name = "ARM,...", value_delimiter = ',')]
     arms: Vec<String>,
 
-    /// The folder of the study [default for the folder of a study: itself].
+    /// Study folder [default: the folder given as DIR].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
-impl What {
-    /// The study, its folder made if it is not there.
-    pub(super) fn study(&self) -> Result<Study, Failure> {
+impl StudyArgs {
+    /// The study; creates its folder if it does not exist.
+    pub(super) fn create(&self) -> Result<Study, Failure> {
         let Study { plan, folder } = self.planned()?;
         Ok(Study::create(plan, &folder)?)
     }
 
-    /// The study as it is to be; nothing is made.
+    /// The study as it would be created; creates nothing.
     pub(super) fn planned(&self) -> Result<Study, Failure> {
         let plan = self.plan()?;
         let itself = || match self.what.as_slice() {
@@ -116,7 +116,7 @@ impl What {
             _ => None,
         };
         let folder = self.out.clone().or_else(itself);
-        let folder = folder.ok_or("--out: found none; allowed: the folder of the study")?;
+        let folder = folder.ok_or("--out: found none; allowed: a folder for the study")?;
         Ok(Study { plan, folder })
     }
 
@@ -125,13 +125,13 @@ impl What {
             && Plan::is_plan(only)
         {
             if self.seeds.is_some() || !self.arms.is_empty() {
-                let message = "--seeds, --arms: found beside a plan, which has its own; \
-                               allowed: beside scenarios";
+                let message = "--seeds, --arms: found with a plan, which has its own; \
+                               allowed: with scenarios";
                 return Err(message.into());
             }
             return Ok(Plan::load(only)?);
         }
-        self.refuse_what_is_no_scenario()?;
+        self.refuse_other_than_scenarios()?;
         let arms = self.arms.iter().map(|name| {
             let base = Base::find(name);
             base.map(Arm::of)
@@ -148,11 +148,12 @@ impl What {
         Ok(Plan::of(&self.what, seeds, arms)?)
     }
 
-    /// A folder, and a single name that nothing has, may have been meant for a plan or a study.
-    fn refuse_what_is_no_scenario(&self) -> Result<(), Failure> {
+    /// Refuses a folder, and a single unknown name, which may have been meant as a plan or study.
+    fn refuse_other_than_scenarios(&self) -> Result<(), Failure> {
         if let Some(folder) = self.what.iter().find(|name| Path::new(name).is_dir()) {
             Study::open(Path::new(folder))?;
-            let message = format!("{folder}: found a study beside others; allowed: alone");
+            let message =
+                format!("{folder}: found a study folder with other arguments; allowed: alone");
             return Err(message.into());
         }
         let names = |all: &[Embedded]| all.iter().map(|known| known.name).collect::<Vec<_>>();
@@ -161,8 +162,8 @@ impl What {
             [only] if !Path::new(only).exists() && !scenarios.contains(&only.as_str()) => {
                 let (plans, scenarios) = (plans.join(", "), scenarios.join(", "));
                 let message = format!(
-                    "no plan, study or scenario {only:?}: there is no such file or folder, the \
-                     embedded plans are {plans}, the embedded scenarios {scenarios}"
+                    "no plan, study or scenario {only:?}; allowed: a file, a study folder, a \
+                     built-in plan ({plans}) or a built-in scenario ({scenarios})"
                 );
                 Err(message.into())
             }
@@ -176,20 +177,21 @@ enum Command {
     Status(status::StatusArgs),
     Watch(status::WatchArgs),
     Report(status::ReportArgs),
-    Plan(elsewhere::PlanArgs),
-    Slurm(elsewhere::SlurmArgs),
-    Merge(elsewhere::MergeArgs),
+    #[command(alias = "plan")]
+    Commands(distribute::CommandsArgs),
+    Slurm(distribute::SlurmArgs),
+    Merge(distribute::MergeArgs),
 }
 
-/// Carries out the command.
+/// Runs `maxq-lab study` and its subcommands.
 pub(super) fn main(args: &Args) -> CommandResult {
     match &args.command {
         Some(Command::Status(args)) => status::show(args),
         Some(Command::Watch(args)) => status::watch(args),
         Some(Command::Report(args)) => status::report(args),
-        Some(Command::Plan(args)) => elsewhere::plan(args),
-        Some(Command::Slurm(args)) => elsewhere::slurm(args),
-        Some(Command::Merge(args)) => elsewhere::merge_parts(args),
+        Some(Command::Commands(args)) => distribute::commands(args),
+        Some(Command::Slurm(args)) => distribute::slurm(args),
+        Some(Command::Merge(args)) => distribute::merge_parts(args),
         None => runs::main(args),
     }
 }

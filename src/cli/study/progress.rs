@@ -1,4 +1,4 @@
-//! ExecutionArgs far this program's work on the runs of a study is: as a bar, and for the table.
+//! The progress of this process on the runs of a study, for the bar and for the table.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -11,7 +11,7 @@ use crate::cli::progress;
 use crate::dashboard::Work;
 use crate::report::{Pace, RunId, Study, StudyEvent};
 
-/// Progress of the work on runs of a study.
+/// The progress of this process.
 pub(super) struct Progress {
     study: Study,
     jobs: usize,
@@ -21,31 +21,27 @@ pub(super) struct Progress {
 
 struct State {
     pace: Pace,
-    /// Why runs cannot be done, by their numbers.
+    /// Errors of failed runs, by run number.
     failures: BTreeMap<usize, String>,
-    /// Whether standard error may be written to: no table has the screen.
-    is_said: bool,
+    /// Whether the bar is shown; while a table has the screen, standard error is not written.
+    is_shown: bool,
     is_over: bool,
 }
 
-/// What this program does on the runs of a study.
+/// The part of this process in a study, as the table shows it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Own {
-    /// Its work, while it goes on.
+pub(super) struct OwnProgress {
+    /// Its work, until that ends.
     pub(super) work: Option<Work>,
-    /// Why runs cannot be done, by their numbers.
+    /// Errors of failed runs, by run number.
     pub(super) failures: BTreeMap<usize, String>,
 }
 
 impl Progress {
-    /// With all of these runs to do, so many at a time; nothing is shown yet.
+    /// The start: all of `runs` are to do, `jobs` at a time. Nothing is shown yet.
     pub(super) fn new(study: &Study, runs: &[RunId], jobs: usize) -> Self {
-        let bar = progress::bar(runs.len() as u64, false);
-        if let Ok(style) =
-            indicatif::ProgressStyle::with_template("{bar:20} {pos}/{len} {elapsed}  {wide_msg}")
-        {
-            bar.set_style(style);
-        }
+        let template = "{bar:20} {pos}/{len} runs, {elapsed}  {wide_msg}";
+        let bar = progress::hidden(runs.len() as u64, template);
         Self {
             study: study.clone(),
             jobs,
@@ -53,7 +49,7 @@ impl Progress {
             state: Mutex::new(State {
                 pace: Pace::of(runs),
                 failures: BTreeMap::new(),
-                is_said: false,
+                is_shown: false,
                 is_over: false,
             }),
         }
@@ -63,29 +59,32 @@ impl Progress {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Shows itself on standard error from now on, and says what failed before.
-    pub(super) fn appear(&self) {
+    /// Shows the bar from now on, after the errors so far.
+    pub(super) fn show(&self) {
         let mut state = self.state();
-        if !state.is_said {
-            state.is_said = true;
-            state.failures.values().for_each(|why| output::message(why));
-            progress::appear(&self.bar);
+        if !state.is_shown {
+            state.is_shown = true;
+            state
+                .failures
+                .values()
+                .for_each(|message| output::message(message));
+            progress::show(&self.bar);
         }
     }
 
-    /// Takes in what happened to a run.
-    pub(super) fn tell(&self, happening: &StudyEvent) {
+    /// Updates the progress after an event.
+    pub(super) fn update(&self, event: &StudyEvent) {
         let mut state = self.state();
-        let (run, took) = match happening {
+        let (run, took) = match event {
             StudyEvent::Started(_) => return,
             StudyEvent::Done { run, took, .. } => (run, Some(*took)),
             StudyEvent::Elsewhere(run) => (run, None),
             StudyEvent::Failed { run, error } => {
-                let why = format!("error: {}: {error}", self.study.name(run));
-                if state.is_said {
-                    self.bar.suspend(|| output::message(&why));
+                let message = format!("error: {}: {error}", self.study.name(run));
+                if state.is_shown {
+                    self.bar.suspend(|| output::message(&message));
                 }
-                state.failures.insert(run.number, why);
+                state.failures.insert(run.number, message);
                 (run, None)
             }
         };
@@ -93,14 +92,14 @@ impl Progress {
         self.bar.inc(1);
         let left = state.pace.left(self.jobs).map(|left| {
             let whole = Duration::from_secs(left.as_secs());
-            format!("about {} left, ", humantime::format_duration(whole))
+            format!("about {} left; ", humantime::format_duration(whole))
         });
         let left = left.unwrap_or_default();
         self.bar
-            .set_message(format!("{left}last: {}", self.study.name(run)));
+            .set_message(format!("{left}last run: {}", self.study.name(run)));
     }
 
-    /// The work is over.
+    /// Records that the work is over.
     pub(super) fn end(&self) {
         self.state().is_over = true;
     }
@@ -110,19 +109,20 @@ impl Progress {
         self.state().is_over
     }
 
-    /// What this program does now.
-    pub(super) fn own(&self) -> Own {
+    /// The progress now.
+    pub(super) fn own(&self) -> OwnProgress {
         let state = self.state();
         let left = state.pace.left(self.jobs);
-        Own {
+        OwnProgress {
             work: (!state.is_over).then_some(Work { left }),
             failures: state.failures.clone(),
         }
     }
 
-    /// Ends the display; says what failed, if it was not said, and how many runs did.
+    /// Removes the bar, prints errors that are not printed yet, and returns the number of
+    /// failed runs.
     pub(super) fn finish(&self) -> usize {
-        self.appear();
+        self.show();
         self.bar.finish_and_clear();
         self.state().failures.len()
     }

@@ -1,4 +1,4 @@
-//! The runs of a study, done by this process: on a terminal with their table.
+//! Does the runs of a study in this process, with a table on a terminal.
 
 use std::num::NonZeroUsize;
 use std::process::ExitCode;
@@ -9,37 +9,40 @@ use super::Args;
 use super::progress::Progress;
 use super::table;
 use crate::cli::args::OnHangup;
-use crate::cli::dashboard::{DashboardArgs, DashboardSettings};
-use crate::cli::live::{PATIENCE, end_within, goes_on};
+use crate::cli::dashboard::DashboardSettings;
+use crate::cli::live::{PATIENCE, continues, end_within};
 use crate::cli::output::{self, CommandResult, Failure};
 use crate::cli::signals::{SignalWatcher, Termination};
 use crate::dashboard::session::Exit;
-use crate::dashboard::terminal;
 use crate::report::{RunId, RunState, Study, StudyControls, run_study, status};
 
-/// Carries out `study`.
+/// Runs `maxq-lab study`.
 pub(super) fn main(args: &Args) -> CommandResult {
-    // What is wrong is told before anything is made.
-    let runs = wanted(&args.what.planned()?, &args.only)?;
-    let study = args.what.study()?;
-    let signals = SignalWatcher::now()?;
-    let dashboard = match args.headless || !DashboardArgs::is_possible() {
-        true => None,
-        false => Some(args.dashboard.settings()?),
-    };
+    // Mistakes are reported before anything is created.
+    let runs = selected(&args.study.planned()?, &args.only)?;
+    let study = args.study.create()?;
+    let signals = SignalWatcher::start()?;
+    let dashboard = args.dashboard.unless(args.headless)?;
     let jobs = jobs(args.jobs);
     let work = Arc::new(OwnWork {
         controls: StudyControls::default(),
         progress: Progress::new(&study, &runs, jobs.get()),
     });
-    let ended = Termination::default();
+    let termination = Termination::default();
     let exit = thread::scope(|scope| {
         scope.spawn(|| {
-            let tell = |happening| work.progress.tell(&happening);
-            run_study(&study, &runs, jobs, args.keep, &work.controls, tell);
+            let update = |event| work.progress.update(&event);
+            run_study(&study, &runs, jobs, args.keep, &work.controls, update);
             work.progress.end();
         });
-        let followed = follow(&study, &work, dashboard, signals, &ended, args.on_hangup);
+        let followed = follow(
+            &study,
+            &work,
+            dashboard,
+            signals,
+            &termination,
+            args.on_hangup,
+        );
         if followed.is_err() {
             work.controls.stop();
         }
@@ -49,89 +52,89 @@ pub(super) fn main(args: &Args) -> CommandResult {
         end_within(PATIENCE, 128 + signal)?;
     }
     let failed = work.progress.finish();
-    let left = tell_done(&study, &runs)?;
-    conclude(failed, left, &work.controls, &ended, exit)
+    let left = report(&study, &runs)?;
+    conclude(failed, left, &work.controls, &termination, exit)
 }
 
-/// The work on the runs that this process does, and how far it is.
+/// The work of this process and its progress.
 struct OwnWork {
     controls: StudyControls,
     progress: Progress,
 }
 
-/// Follows the work with a table, as long as somebody wants to see it, then with a bar.
-/// Returns while the work goes on, or is about to stop; how the table was left, if there
-/// was one.
+/// Shows the table until the user leaves it, then the bar.
+///
+/// Returns how the table was left, if there was one, while the work continues or is about to
+/// stop.
 fn follow(
     study: &Study,
     work: &Arc<OwnWork>,
     dashboard: Option<DashboardSettings>,
     signals: SignalWatcher,
-    ended: &Termination,
+    termination: &Termination,
     on_hangup: OnHangup,
 ) -> Result<Option<Exit>, Failure> {
-    // There is a line that can drop. Without one SIGHUP asks the program to end.
-    let survives = on_hangup == OnHangup::Detach && terminal::is_attached();
+    // Asked while there is still a terminal.
+    let survives = on_hangup.survives();
     let own = Arc::clone(work);
-    let exit = match dashboard {
-        Some(dashboard) => Some(table::show(study, dashboard, &signals, move || {
-            own.progress.own()
-        })?),
-        None => None,
-    };
-    if exit == Some(Exit::Detached) || goes_on(exit, ended, on_hangup, || {}) {
+    let own = move || own.progress.own();
+    let exit = dashboard.map(|dashboard| table::show(study, dashboard, &signals, own));
+    let exit = exit.transpose()?;
+    if exit == Some(Exit::Detached) || continues(exit, termination, on_hangup, || {}) {
         let stopping = Arc::clone(work);
-        signals.stop(ended, survives, move || stopping.controls.stop())?;
-        work.progress.appear();
+        signals.stop_on_signals(termination, survives, move || stopping.controls.stop())?;
+        work.progress.show();
     } else {
         if exit == Some(Exit::Left) && !work.progress.is_over() {
-            ended.by_hand();
+            termination.record_user_stop();
         }
         work.controls.stop();
     }
     Ok(exit)
 }
 
-/// Says how many runs are done, and where all of the study are what to do next; returns how
-/// many are not.
-fn tell_done(study: &Study, runs: &[RunId]) -> Result<usize, Failure> {
+/// Prints how many of `runs` are done; returns how many are not.
+fn report(study: &Study, runs: &[RunId]) -> Result<usize, Failure> {
     let (now, all) = (status(study), runs.len());
     let done = || now.iter().filter(|status| status.stage == RunState::Done);
-    let is_whole = done().count() == now.len();
-    let done = done().filter(|status| runs.contains(&status.run)).count();
     let folder = study.folder.display();
-    let next = match is_whole {
-        true => format!("; 'maxq-lab study report {folder}' says what comes out"),
-        false => String::new(),
+    let next = if done().count() == now.len() {
+        format!("; next: maxq-lab study report {folder}")
+    } else {
+        String::new()
     };
+    let done = done().filter(|status| runs.contains(&status.run)).count();
     output::text(&format!("{done} of {all} runs done in {folder}{next}\n"))?;
     Ok(all - done)
 }
 
+/// Prints why runs are not done and returns the exit code.
 fn conclude(
     failed: usize,
     left: usize,
     controls: &StudyControls,
-    ended: &Termination,
+    termination: &Termination,
     exit: Option<Exit>,
 ) -> CommandResult {
     if left > 0 && controls.is_stopped() {
-        output::message("stopped; the same command goes on");
+        output::message("stopped; run the same command to resume");
     } else if failed == 0 && left > 0 {
         output::message(
-            "the others are done by another process; 'study status' tells how far it is",
+            "another process is working on the other runs; 'maxq-lab study status' shows their \
+             progress",
         );
     }
-    if let Some(code) = ended.exit_code().filter(|_| left > failed) {
+    if let Some(code) = termination.exit_code().filter(|_| left > failed) {
         return Ok(ExitCode::from(code));
     }
-    match failed > 0 || exit == Some(Exit::Panicked) {
-        true => Ok(ExitCode::FAILURE),
-        false => Ok(ExitCode::SUCCESS),
+    if failed > 0 || exit == Some(Exit::Panicked) {
+        return Ok(ExitCode::FAILURE);
     }
+    Ok(ExitCode::SUCCESS)
 }
 
-fn wanted(study: &Study, only: &[String]) -> Result<Vec<RunId>, Failure> {
+/// The runs that `--only` names, or all.
+fn selected(study: &Study, only: &[String]) -> Result<Vec<RunId>, Failure> {
     if only.is_empty() {
         return Ok(study.runs());
     }

@@ -4,20 +4,20 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use super::progress::Own;
+use super::progress::OwnProgress;
 use super::table;
 use crate::cli::dashboard::{DashboardArgs, exit_code};
 use crate::cli::output::{self, CommandResult, Format};
 use crate::report::{RunState, RunStatus, Study, status, write_report};
 
-/// Tell how far the runs of a study are.
+/// Show the progress of a study.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   maxq-lab study status studies/thesis
   maxq-lab study status studies/thesis --format json | jq -r '.[] | select(.stage != \"done\").name'")]
 pub(super) struct StatusArgs {
-    /// The folder of the study.
+    /// Study folder.
     dir: PathBuf,
 
     /// ExecutionArgs to report.
@@ -25,17 +25,17 @@ pub(super) struct StatusArgs {
     format: Format,
 }
 
-/// Say what comes out: statistics, claims with verdicts, figures.
+/// Write and print the report: statistics, claims with verdicts, figures.
 ///
-/// Writes DIR/report: report.md, report.json, tables as CSV, figures as SVG; prints the
-/// report. It is made of the runs that are done, at any time.
+/// Writes DIR/report (report.md, report.json, tables as CSV, figures as SVG) and prints the
+/// report. It covers the runs that are done so far, so it can be written at any time.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   maxq-lab study report studies/thesis | less
   maxq-lab study report studies/thesis --format json | jq '.claims[] | {claim, verdict}'")]
 pub(super) struct ReportArgs {
-    /// The folder of the study.
+    /// Study folder.
     dir: PathBuf,
 
     /// ExecutionArgs to print it.
@@ -43,7 +43,7 @@ pub(super) struct ReportArgs {
     format: Format,
 }
 
-/// Carries out `study report`.
+/// Runs `study report`.
 pub(super) fn report(args: &ReportArgs) -> CommandResult {
     let written = write_report(&Study::open(&args.dir)?)?;
     match args.format {
@@ -52,14 +52,14 @@ pub(super) fn report(args: &ReportArgs) -> CommandResult {
     }
     let folder = args.dir.join("report");
     output::message(&format!(
-        "{} files in {}",
+        "wrote {} files to {}",
         written.files.len(),
         folder.display()
     ));
     Ok(ExitCode::SUCCESS)
 }
 
-/// Carries out `study status`.
+/// Runs `study status`.
 pub(super) fn show(args: &StatusArgs) -> CommandResult {
     let study = Study::open(&args.dir)?;
     let runs = status(&study);
@@ -116,7 +116,7 @@ fn describe(study: &Study, runs: &[RunStatus]) -> String {
         let (name, word) = (&status.name, status.stage.word());
         let detail = status.trouble.clone().unwrap_or_else(|| {
             let best = status.best_steps.last();
-            let best = best.map(|best| format!(", best {best:.0} steps a trial"));
+            let best = best.map(|best| format!(", best {best:.0} steps per trial"));
             format!(
                 "generation {}{}",
                 status.generations,
@@ -128,29 +128,34 @@ fn describe(study: &Study, runs: &[RunStatus]) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Follow the runs of a study, and open any of them.
+/// Watch the runs of a study in a table, and open any of them.
 ///
-/// A table of the runs: how each stands, its generation, the best fitness and its course.
-/// Enter opens a run in the dashboard, as a replay if it is over or broken off, watched if it
-/// goes on; q comes back. Folders are read once a second, never written or locked: the study
-/// may be done by this machine or by others. Press ? for the keys.
+/// The table shows the state of every run, its generation, its best fitness and a sparkline.
+/// Enter opens a run in the dashboard, live if it is running and as a replay otherwise; q
+/// returns to the table. Study folders are only read, once per second, and never locked: the
+/// study may run on this machine or on others. Press ? for the keys.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   maxq-lab study watch studies/thesis
-  maxq-lab study watch /shared/studies/thesis --fps 0.2    look every 5 seconds")]
+  maxq-lab study watch /shared/studies/thesis --fps 0.2    read every 5 seconds")]
 pub(super) struct WatchArgs {
-    /// The folder of the study.
+    /// Study folder.
     dir: PathBuf,
 
     #[command(flatten)]
     dashboard: DashboardArgs,
 }
 
-/// Carries out `study watch`.
+/// Runs `study watch`.
 pub(super) fn watch(args: &WatchArgs) -> CommandResult {
     let study = Study::open(&args.dir)?;
     let instead = format!("maxq-lab study status {}", args.dir.display());
     let (dashboard, signals) = args.dashboard.require(&instead)?;
-    exit_code(table::show(&study, dashboard, &signals, Own::default)?)
+    exit_code(table::show(
+        &study,
+        dashboard,
+        &signals,
+        OwnProgress::default,
+    )?)
 }

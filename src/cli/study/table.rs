@@ -1,4 +1,4 @@
-//! The runs of a study as a table, each of which can be opened.
+//! The table of the runs of a study; Enter opens a run in the dashboard.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-use super::progress::Own;
+use super::progress::OwnProgress;
 use crate::cli::dashboard::DashboardSettings;
 use crate::cli::output::Failure;
 use crate::cli::signals::SignalWatcher;
@@ -18,37 +18,38 @@ use crate::dashboard::{RunRow, RunsNews, Standing};
 use crate::lab::{Life, Recording, Watch, lasting_experiment};
 use crate::report::{RunState, RunStatus, StatusWatch, Study, course};
 
-/// Time between two looks at the study's folder, at least.
-const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
+/// Shortest time between two reads of the study folder.
+const SHORTEST_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Time that a look may spend on the past of runs that are over: the first rows are there
-/// at once, the sparklines of hundreds of runs follow.
+/// How long one read may spend on the sparklines of finished runs.
+///
+/// The first rows appear at once; the sparklines of hundreds of runs follow.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Shows the runs of a study until somebody or something ends it; `own` tells what this
-/// program does on them.
+/// Shows the runs of a study until the user leaves the table or something ends it; `own` returns
+/// the progress of this process.
 pub(super) fn show(
     study: &Study,
     mut dashboard: DashboardSettings,
     signals: &SignalWatcher,
-    own: impl Fn() -> Own + Send + 'static,
+    own: impl Fn() -> OwnProgress + Send + 'static,
 ) -> Result<Exit, Failure> {
     let runs = study.runs();
     let folder = study.folder.display().to_string();
     let mut table = dashboard.table(study.plan.name.clone(), folder);
-    let interval = dashboard.period().max(BETWEEN_LOOKS);
-    let looks = Looks::start(study.clone(), interval, own)?;
+    let interval = dashboard.period().max(SHORTEST_INTERVAL);
+    let reader = Reader::start(study.clone(), interval, own)?;
     let mut terminal = dashboard.terminal()?;
     loop {
-        let session = RunsSession::new(&mut table, &mut terminal, &looks.news);
-        let place = match session.run(&signals.heard)? {
+        let session = RunsSession::new(&mut table, &mut terminal, &reader.news);
+        let place = match session.run(&signals.received)? {
             RunsExit::End(exit) => return Ok(exit),
             RunsExit::Open(place) => place,
         };
         let Some(run) = runs.get(place) else {
             continue;
         };
-        dashboard.wear(table.look().clone());
+        dashboard.look = table.look().clone();
         match open(&study.run_folder(run), &dashboard, &mut terminal, signals) {
             Ok(Exit::Left | Exit::Detached) => {}
             Ok(exit) => return Ok(exit),
@@ -58,7 +59,7 @@ pub(super) fn show(
     }
 }
 
-/// Opens a run in the dashboard.
+/// Shows the run in `folder` in the dashboard: live if a process computes it, else a replay.
 fn open(
     folder: &Path,
     dashboard: &DashboardSettings,
@@ -77,21 +78,21 @@ fn open(
         None => Source::recorded(recording),
     };
     let session = dashboard.session(experiment, folder, source, terminal)?;
-    Ok(session.within().run(&signals.heard)?)
+    Ok(session.within().run(&signals.received)?)
 }
 
-/// A study that is looked at from time to time, until this is dropped.
-struct Looks {
-    /// Its runs, in the order of the study, and this program's work on them.
+/// A thread that reads a study again and again until this is dropped.
+struct Reader {
+    /// The runs, in the order of the study, and the progress of this process.
     news: Receiver<RunsNews>,
     _stop: Sender<()>,
 }
 
-impl Looks {
+impl Reader {
     fn start(
         study: Study,
         interval: Duration,
-        own: impl Fn() -> Own + Send + 'static,
+        own: impl Fn() -> OwnProgress + Send + 'static,
     ) -> std::io::Result<Self> {
         let (sender, news) = bounded(0);
         let (stop, stopped) = bounded::<()>(0);
@@ -99,9 +100,9 @@ impl Looks {
             .name(String::from("study"))
             .spawn(move || {
                 let (mut past, mut watch) = (HashMap::new(), StatusWatch::of(&study));
-                // Nobody looks at the folders while nobody takes what was seen.
+                // The channel has no buffer: nothing is read while the table is not shown.
                 while sender
-                    .send(look(&study, watch.look(), &mut past, own()))
+                    .send(rows(&study, watch.look(), &mut past, own()))
                     .is_ok()
                 {
                     if stopped.recv_timeout(interval) != Err(RecvTimeoutError::Timeout) {
@@ -113,13 +114,12 @@ impl Looks {
     }
 }
 
-/// The runs as they are `now`, with what this program does; `past` keeps the courses of those
-/// that are over, by number.
-fn look(
+/// The rows of the table; `past` keeps the sparklines of finished runs, by run number.
+fn rows(
     study: &Study,
     now: Vec<RunStatus>,
     past: &mut HashMap<usize, Vec<f64>>,
-    own: Own,
+    own: OwnProgress,
 ) -> RunsNews {
     let begun = Instant::now();
     let rows = now.into_iter().map(|status| {
@@ -127,7 +127,7 @@ fn look(
         if !is_over {
             past.remove(&status.number);
         } else if !past.contains_key(&status.number) && begun.elapsed() < PATIENCE {
-            // A log that cannot be read leaves the end, which is known without it.
+            // If the log cannot be read, the final value is all there is.
             let read = course(&status.folder);
             past.insert(status.number, read.unwrap_or(status.best_steps.clone()));
         }
