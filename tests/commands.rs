@@ -405,7 +405,10 @@ fn examples(help: &str) -> Vec<String> {
         .take_while(|line| line.starts_with("  "));
     let mut commands = Vec::<String>::new();
     for line in lines {
-        assert!(line.chars().count() <= 100, "is too long, so it is wrapped: {line}");
+        assert!(
+            line.chars().count() <= 100,
+            "is too long, so it is wrapped: {line}"
+        );
         match commands.last_mut().filter(|last| last.ends_with('\\')) {
             Some(last) => *last = last.replace('\\', line.trim()),
             None => commands.push(line.trim().to_owned()),

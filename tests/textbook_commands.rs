@@ -1,8 +1,8 @@
-//! The textbook worlds go through the commands that all worlds go through, and a run of
-//! taxi that was broken off ends with the same bytes as one that was not.
+//! The commands work for the textbook worlds, and an interrupted run of taxi ends with the same
+//! bytes as an uninterrupted one.
 //!
-//! Why it matters: taxi is the world whose subtasks look at different inputs and whose
-//! primitive subtasks each individual learns; what holds for foraging is not enough.
+//! Why it matters: in taxi, subtasks have different inputs and every individual learns its own
+//! primitive subtasks, so tests of foraging do not cover it.
 
 #![allow(clippy::unwrap_used)]
 
@@ -27,7 +27,7 @@ fn fails(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn learning_prints_the_values_of_the_figure() {
+fn learn_prints_the_values_of_the_figure() {
     let text = succeeds(&["learn", "cliff", "--algorithm", "q-learning"]);
     assert!(text.contains("  -14.00  -13.00  -12.00"), "{text}");
     let taxi = [
@@ -47,7 +47,7 @@ fn learning_prints_the_values_of_the_figure() {
 }
 
 #[test]
-fn what_is_given_makes_no_difference_only_where_it_cannot() {
+fn options_without_an_effect_are_rejected() {
     let given = succeeds(&["learn", "cliff", "--algorithm", "td0", "--steps", "2000"]);
     assert!(
         given.contains("1 repeat of 2000 primitive steps"),
@@ -55,7 +55,11 @@ fn what_is_given_makes_no_difference_only_where_it_cannot() {
     );
     assert!(
         !given.contains("until first optimal"),
+<<<<<<< HEAD
         "no policy learns: {given}"
+=======
+        "td0 learns no policy: {given}"
+>>>>>>> 7951f0e (Rewrite headers, names and comments of the command line's tests)
     );
     let learned = succeeds(&["learn", "cliff", "--algorithm", "q-learning"]);
     assert!(learned.contains("until first optimal"), "{learned}");
@@ -75,7 +79,7 @@ fn what_is_given_makes_no_difference_only_where_it_cannot() {
 }
 
 #[test]
-fn what_a_world_does_not_have_is_an_error_that_says_so() {
+fn a_feature_that_a_world_lacks_is_an_error() {
     for algorithm in ["q-learning", "maxq-q"] {
         let foraging = fails(&["learn", "smoke", "--algorithm", algorithm]);
         assert!(foraging.contains("states cannot be counted"), "{foraging}");
@@ -95,8 +99,7 @@ fn what_a_world_does_not_have_is_an_error_that_says_so() {
     assert!(show.contains("from R to B"), "{show}");
 }
 
-/// Evolution, its run folder, and going on from it: primitive subtasks that each
-/// individual learns survive the checkpoint.
+/// Primitive subtasks that each individual learns survive the checkpoint.
 #[test]
 fn taxi_evolves_and_resumes_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Random bytes, and random changes to valid files: the readers may refuse, never panic.
+//! Random bytes, and random changes to valid files, may be rejected but never cause a panic.
 
 use std::fs;
 use std::sync::LazyLock;
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 
 use super::common::{Record, record, short, smoke, threads};
 
-/// What is put into valid text: what readers stumble over.
+/// Text to insert into valid files: what parsers are likely to mishandle.
 const TOKENS: &[&str] = &[
     "",
     "0",
@@ -47,7 +47,8 @@ const TOKENS: &[&str] = &[
     "é",
 ];
 
-/// A change: where, as a share of the text; how many characters go; what comes.
+/// A change: the place, as a fraction of the text; the number of characters removed; the index of
+/// the token inserted.
 type Change = (f64, usize, usize);
 
 fn changes() -> impl Strategy<Value = Vec<Change>> {
@@ -64,17 +65,17 @@ fn changed(text: &str, changes: &[Change]) -> String {
     text.into_iter().collect()
 }
 
-/// Does what a reader of scenarios does with one.
+/// Reads a scenario and prepares its world.
 fn make_ready(text: &str) {
     if let Ok(scenario) = Scenario::parse(text, "fuzzed.json") {
-        let _refused_or_ready = experiment(scenario, 1);
+        let _rejected_or_ready = experiment(scenario, 1);
     }
 }
 
 fn rebuild(text: &str) {
     if let Ok(checkpoint) = Checkpoint::from_text(text) {
         let experiment = experiment(checkpoint.scenario.clone(), checkpoint.seed);
-        let _refused_or_rebuilt = experiment.map(|experiment| experiment.population(&checkpoint));
+        let _rejected_or_rebuilt = experiment.map(|experiment| experiment.population(&checkpoint));
     }
 }
 
@@ -107,7 +108,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..600)) {
+    fn any_bytes_are_read_or_rejected(bytes in prop::collection::vec(any::<u8>(), 0..600)) {
         let text = String::from_utf8_lossy(&bytes);
         make_ready(&text);
         rebuild(&text);
@@ -115,17 +116,17 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("events.jsonl");
         fs::write(&path, &bytes).unwrap();
-        let _refused_or_read = read_events(&path);
+        let _rejected_or_read = read_events(&path);
     }
 
     #[test]
-    fn any_changed_scenario_is_read_or_refused(changes in changes()) {
+    fn any_changed_scenario_is_read_or_rejected(changes in changes()) {
         let valid = serde_json::to_string(&smoke(&[])).unwrap();
         make_ready(&changed(&valid, &changes));
     }
 
     #[test]
-    fn any_changed_checkpoint_is_read_or_refused(changes in changes()) {
+    fn any_changed_checkpoint_is_read_or_rejected(changes in changes()) {
         rebuild(&changed(text_of(&RECORD.checkpoint), &changes));
         let state = changed(state(), &changes);
         let crc32 = crc32fast::hash(state.as_bytes());
@@ -133,15 +134,15 @@ proptest! {
     }
 
     #[test]
-    fn any_changed_event_log_is_read_or_refused(changes in changes()) {
+    fn any_changed_event_log_is_read_or_rejected(changes in changes()) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("events.jsonl");
         fs::write(&path, changed(text_of(&RECORD.events), &changes)).unwrap();
-        let _refused_or_read = read_events(&path);
+        let _rejected_or_read = read_events(&path);
     }
 
     #[test]
-    fn any_words_and_parentheses_are_read_or_refused(
+    fn any_words_and_parentheses_are_read_or_rejected(
         words in prop::collection::vec(
             prop::sample::select(vec!["(", ")", "Root", "Wander", "Capture", "Turn", "Nest", "é"]),
             0..40,
@@ -154,7 +155,7 @@ proptest! {
 }
 
 #[test]
-fn the_changed_files_are_readable_when_nothing_is_changed() {
+fn the_files_are_readable_without_a_change() {
     let crc32 = crc32fast::hash(state().as_bytes());
     let text = format!(
         "{{\"format\":1,\"crc32\":\"{crc32:08x}\",\"state\":{}}}\n",

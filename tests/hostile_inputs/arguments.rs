@@ -1,10 +1,10 @@
-//! The usage of the command line: exit code 2, the bad value quoted, the allowed ones named.
+//! Invalid arguments: exit code 2, with the found and the allowed values in the message.
 
 use super::common::program;
 use super::{assert_says, refused_with};
 
 #[test]
-fn wrong_usage_is_refused_with_code_2() {
+fn invalid_arguments_are_rejected_with_code_2() {
     for (arguments, parts) in [
         (&["run"][..], &["<SCENARIO>"][..]),
         (&["fly"], &["unrecognized subcommand 'fly'"]),
@@ -58,15 +58,14 @@ fn wrong_usage_is_refused_with_code_2() {
     }
 }
 
-#[cfg(unix)]
 #[test]
-fn arguments_that_are_no_text_are_refused() {
+fn arguments_that_are_not_utf8_are_rejected() {
     use std::ffi::OsStr;
     use std::os::unix::ffi::OsStrExt;
 
     let bytes = OsStr::from_bytes(b"\xff\xfe\x1b[31m");
     refused_with(2, program().arg("run").arg(bytes));
     refused_with(2, program().arg(bytes));
-    // A path may be any bytes.
+    // A path may contain any bytes.
     refused_with(1, program().arg("resume").arg(bytes));
 }

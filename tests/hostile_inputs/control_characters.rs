@@ -1,5 +1,5 @@
-//! Text from files and arguments must not steer the terminal of whoever reads a message:
-//! no control character reaches standard output or standard error raw.
+//! Text from files and arguments must not control the terminal of its reader: control
+//! characters are escaped on standard output and standard error.
 
 use std::fs;
 
@@ -10,7 +10,7 @@ use super::{assert_no_controls, assert_says, check, fixture, refused, refused_wi
 const HOSTILE: &str = "x\u{1b}[31m\u{9b}2J\u{7}\r\u{8}\u{7f}\u{c}";
 
 #[test]
-fn keys_names_and_trees_of_files_are_shown_harmlessly() {
+fn keys_names_and_trees_of_files_are_escaped() {
     for (name, shown) in [
         (
             "control-characters-in-a-key.json",
@@ -27,7 +27,7 @@ fn keys_names_and_trees_of_files_are_shown_harmlessly() {
     ] {
         let said = refused(&mut check(&fixture(name)));
         assert_says(&said, &[name, shown]);
-        // The report in JSON is on standard output, its errors escaped.
+        // JSON reports the errors on standard output, escaped.
         let json = output(
             program()
                 .args(["check", "--format", "json"])
@@ -41,7 +41,7 @@ fn keys_names_and_trees_of_files_are_shown_harmlessly() {
 }
 
 #[test]
-fn arguments_are_shown_harmlessly() {
+fn arguments_are_escaped() {
     let tree = format!("(Root {HOSTILE})");
     let setting = format!("learning.{HOSTILE}=1");
     for arguments in [
@@ -76,12 +76,12 @@ fn arguments_are_shown_harmlessly() {
 }
 
 #[test]
-fn paths_and_descriptions_are_shown_harmlessly() {
+fn paths_and_descriptions_are_escaped() {
     let parent = tempfile::tempdir().unwrap();
     let strange = parent.path().join(HOSTILE);
     fs::create_dir(&strange).unwrap();
 
-    // A valid file in a strange folder, with a strange description.
+    // A valid file whose folder and description have control characters.
     let mut scenario = short(&["evolution.generation_limit=1"]);
     scenario.description = String::from(HOSTILE);
     let file = strange.join("scenario.json");
@@ -90,7 +90,7 @@ fn paths_and_descriptions_are_shown_harmlessly() {
     assert!(checked.status.success());
     assert_no_controls(&checked);
 
-    // A run in a strange folder: its result, its refusal, its resumption.
+    // A run in such a folder: its result, its rejection, its resumption.
     let out = strange.join("run");
     for format in ["text", "json"] {
         let run = output(
@@ -113,7 +113,7 @@ fn paths_and_descriptions_are_shown_harmlessly() {
 }
 
 #[test]
-fn keys_and_trees_of_a_run_folder_are_shown_harmlessly() {
+fn keys_and_trees_of_a_run_folder_are_escaped() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("run");
     super::common::run_in(&folder, &short(&[]), 1, &threads(2));

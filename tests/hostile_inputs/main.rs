@@ -1,13 +1,12 @@
-//! Contract 4: no input makes the program panic. Whatever is wrong with a scenario, a
-//! checkpoint, an event log, a run.json, a hierarchy or an argument, the program says
-//! which file, where in it, what was found and what is allowed, and exits with 1 (2 for
-//! the usage of the command line).
+//! Contract 4: no input makes the program panic. If a scenario, a checkpoint, an event log, a
+//! run.json, a hierarchy or an argument is invalid, the error names the file, the place in it,
+//! what was found and what is allowed. The exit code is 1, or 2 for invalid arguments.
 //!
-//! Why it matters: files come from other people, other versions and full disks. A panic
-//! tells nothing about the file, and a control character that is passed on steers the
-//! terminal of whoever looks at the message.
+//! Why it matters: files come from other people, other versions and full disks. A panic says
+//! nothing about the file, and a control character in a message controls the terminal of its
+//! reader.
 //!
-//! The fixtures in `tests/fixtures/scenarios` are `valid.json` with one thing changed each.
+//! Each fixture in `tests/fixtures/scenarios` is `valid.json` with one change.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -32,8 +31,8 @@ fn fixture(name: &str) -> PathBuf {
     fixtures.join(name)
 }
 
-/// Runs a command that must refuse with an exit code, without a panic and without raw
-/// control characters; returns what it says.
+/// Runs a command that must fail with an exit code, without a panic and without raw control
+/// characters; returns its standard error.
 fn refused_with(code: i32, command: &mut Command) -> String {
     let output = output(command);
     let said = stderr(&output);
@@ -48,7 +47,7 @@ fn refused(command: &mut Command) -> String {
     refused_with(1, command)
 }
 
-/// Neither output has a control character but the ends of lines.
+/// Asserts that line ends are the only control characters in both outputs.
 fn assert_no_controls(output: &Output) {
     for text in [common::stdout(output), stderr(output)] {
         let control = text.chars().find(|&c| c.is_control() && c != '\n');
@@ -56,7 +55,7 @@ fn assert_no_controls(output: &Output) {
     }
 }
 
-/// Everything of `parts` is said.
+/// Asserts that a message contains all of `parts`.
 fn assert_says(said: &str, parts: &[&str]) {
     for part in parts {
         assert!(said.contains(part), "{part:?} is missing in: {said}");

@@ -1,4 +1,4 @@
-//! Every rule of a scenario: a setting that breaks it, and the place that is named.
+//! Every rule of a scenario, with a setting that breaks it and the place that the error names.
 
 use maxq_lab::scenario::{Scenario, ScenarioError};
 
@@ -218,7 +218,7 @@ const RULES: &[(&str, &str)] = &[
     ),
 ];
 
-/// A fence of the smoke arena with one thing changed.
+/// A fence of the smoke arena with one change.
 const FENCES: &[(&str, &str)] = &[
     (
         r#""from_mm":[0,2001],"to_mm":[9,9],"slit_width_mm":9,"slits_at_mm":[]"#,
@@ -263,7 +263,7 @@ const OTHER_WORLDS: &[(&str, &str, &str)] = &[
     ("cliff", "rbf_width_cells=0", "rbf_width_cells"),
 ];
 
-/// The places of the problems that a setting leads to.
+/// The places of the problems that a setting causes.
 fn places(scenario: &Scenario, setting: &str) -> Vec<String> {
     match scenario.clone().with_settings(&[setting.to_owned()]) {
         Err(ScenarioError::Invalid { problems, .. }) => {
@@ -279,7 +279,7 @@ fn places(scenario: &Scenario, setting: &str) -> Vec<String> {
 }
 
 #[test]
-fn every_rule_names_the_place_where_it_is_broken() {
+fn every_broken_rule_names_its_place() {
     for (setting, place) in RULES {
         let places = places(&smoke(&[]), setting);
         assert!(
@@ -304,7 +304,7 @@ fn every_rule_names_the_place_where_it_is_broken() {
 }
 
 #[test]
-fn all_rules_that_are_broken_are_named_at_once() {
+fn all_broken_rules_are_reported_together() {
     let taxi = Scenario::load("taxi").unwrap();
     let world = r#"world.taxi={"map":["R|G"],"slip":2}"#;
     assert_eq!(places(&taxi, world), ["world.taxi.map", "world.taxi.slip"]);
@@ -361,7 +361,7 @@ fn lists_have_limits() {
 }
 
 #[test]
-fn every_broken_rule_is_told_at_once() {
+fn the_program_reports_all_broken_rules_together() {
     let said = refused(program().args(["run", "smoke"]).args([
         "--set",
         "learning.discount=2",
@@ -379,7 +379,7 @@ fn every_broken_rule_is_told_at_once() {
 }
 
 #[test]
-fn settings_that_are_none_are_refused() {
+fn malformed_settings_are_rejected() {
     for (setting, parts) in [
         ("learning", &["allowed: key=value"][..]),
         (
@@ -417,7 +417,7 @@ fn settings_that_are_none_are_refused() {
 
 #[test]
 fn the_largest_and_smallest_numbers_allowed_do_not_panic() {
-    // Learning as wild as the rules allow; a run may fail for it, but says why.
+    // Learning with the most extreme values allowed; a run may fail, but says why.
     let scenario = short(&[
         "learning.learning_rate=1",
         "learning.discount=1",
@@ -438,7 +438,7 @@ fn the_largest_and_smallest_numbers_allowed_do_not_panic() {
     let path = folder.path().join("run");
     let run = maxq_lab::lab::start(scenario, 1, &path, &Default::default());
     let ended = run.unwrap().join();
-    // A number that is none would be written as null, which no log may hold.
+    // NaN would be written as null, which no log may contain.
     assert!(maxq_lab::lab::read_events(&path.join("events.jsonl")).is_ok());
     match ended {
         Ok(outcome) => assert_eq!(outcome.generations, 6),

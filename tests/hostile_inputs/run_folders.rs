@@ -1,4 +1,4 @@
-//! Run folders whose files are broken: `checkpoint.json`, `events.jsonl`, `run.json`.
+//! Run folders with a broken `checkpoint.json`, `events.jsonl` or `run.json`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use super::common::{Record, output, program, run_in, short, threads};
 use super::{assert_says, refused};
 
-/// A finished run that can be broken and made whole again.
+/// A finished run whose files can be broken and restored.
 struct Victim {
     _parent: TempDir,
     folder: PathBuf,
@@ -33,7 +33,7 @@ impl Victim {
         }
     }
 
-    /// What `resume` says of the folder with `name` replaced; then it is whole again.
+    /// The error of `resume` with the file `name` replaced; restores the file.
     fn says_with(&self, name: &str, bytes: &[u8]) -> String {
         fs::write(self.folder.join(name), bytes).unwrap();
         self.says()
@@ -55,13 +55,13 @@ impl Victim {
         fs::read_to_string(self.folder.join(name)).unwrap()
     }
 
-    /// The state of the checkpoint.
+    /// The state in the checkpoint.
     fn state(&self) -> Value {
         let checkpoint: Value = serde_json::from_str(&self.text("checkpoint.json")).unwrap();
         checkpoint["state"].clone()
     }
 
-    /// What is said of a checkpoint with a changed state and the checksum of that.
+    /// The error for a checkpoint with a changed state and its correct checksum.
     fn says_of_state(&self, change: impl FnOnce(&mut Value)) -> String {
         let mut state = self.state();
         change(&mut state);
@@ -69,14 +69,14 @@ impl Victim {
     }
 }
 
-/// A checkpoint file with the right checksum.
+/// A checkpoint file with the correct checksum.
 fn envelope(state: &str) -> String {
     let crc32 = crc32fast::hash(state.as_bytes());
     format!("{{\"format\":1,\"crc32\":\"{crc32:08x}\",\"state\":{state}}}\n")
 }
 
 #[test]
-fn a_checkpoint_that_is_none_is_refused() {
+fn a_malformed_checkpoint_is_rejected() {
     let victim = Victim::new();
     let whole = victim.text("checkpoint.json");
     let says = |bytes: &[u8]| victim.says_with("checkpoint.json", bytes);
@@ -112,7 +112,7 @@ fn a_checkpoint_that_is_none_is_refused() {
 }
 
 #[test]
-fn a_changed_digit_of_a_learned_value_is_noticed() {
+fn a_changed_digit_of_a_learned_value_is_detected() {
     let victim = Victim::new();
     let mut bytes = victim.text("checkpoint.json").into_bytes();
     let learned = victim
@@ -135,7 +135,7 @@ fn a_changed_digit_of_a_learned_value_is_noticed() {
 }
 
 #[test]
-fn numbers_that_are_none_are_refused_although_the_checksum_is_right() {
+fn numbers_that_are_not_finite_are_rejected_despite_a_correct_checksum() {
     let victim = Victim::new();
     let state = victim.state().to_string();
     let first =
@@ -159,7 +159,7 @@ fn numbers_that_are_none_are_refused_although_the_checksum_is_right() {
 }
 
 #[test]
-fn a_state_that_does_not_fit_its_scenario_is_refused() {
+fn a_state_that_does_not_fit_its_scenario_is_rejected() {
     let victim = Victim::new();
     type Change = fn(&mut Value);
     let changes: &[(Change, &str)] = &[
@@ -315,7 +315,7 @@ fn double_last(list: &mut Value) {
 }
 
 #[test]
-fn an_event_log_that_is_not_of_the_checkpoint_is_refused() {
+fn an_event_log_that_does_not_match_the_checkpoint_is_rejected() {
     let victim = Victim::new();
     let whole = victim.text("events.jsonl");
     let says = |bytes: &[u8]| victim.says_with("events.jsonl", bytes);
@@ -344,7 +344,7 @@ fn an_event_log_that_is_not_of_the_checkpoint_is_refused() {
 }
 
 #[test]
-fn a_line_that_is_no_event_is_refused_although_the_checksum_is_right() {
+fn a_line_that_is_no_event_is_rejected_despite_a_correct_checksum() {
     let victim = Victim::new();
     let whole = victim.text("events.jsonl");
     let first = whole.lines().next().unwrap();
@@ -380,7 +380,7 @@ fn a_line_that_is_no_event_is_refused_although_the_checksum_is_right() {
 }
 
 #[test]
-fn a_damaged_run_json_is_refused() {
+fn a_damaged_run_json_is_rejected() {
     let victim = Victim::new();
     let whole = victim.text("run.json");
     let says = |text: &str| victim.says_with("run.json", text.as_bytes());
@@ -417,7 +417,7 @@ fn a_damaged_run_json_is_refused() {
 }
 
 #[test]
-fn a_refusal_changes_nothing_that_is_needed_to_go_on() {
+fn a_rejected_resume_changes_nothing_that_is_needed_to_resume() {
     let victim = Victim::new();
     let expected = Record::of(&victim.folder);
     let lines: Vec<_> = victim
@@ -434,7 +434,7 @@ fn a_refusal_changes_nothing_that_is_needed_to_go_on() {
 }
 
 #[test]
-fn what_is_no_run_folder_is_refused() {
+fn a_folder_without_a_run_is_rejected() {
     let parent = TempDir::new().unwrap();
     let resume = |path: &Path| refused(program().arg("resume").arg(path));
     let says = "holds no run.json; allowed: a run folder";
@@ -449,7 +449,7 @@ fn what_is_no_run_folder_is_refused() {
 }
 
 #[test]
-fn generations_that_were_lived_already_cannot_be_taken_back() {
+fn the_generation_limit_cannot_be_below_the_finished_generations() {
     let victim = Victim::new();
     for limit in ["0", "1", "100001"] {
         let mut command = program();

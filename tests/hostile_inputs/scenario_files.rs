@@ -1,11 +1,11 @@
-//! Scenario files that are broken as files, as JSON, or as scenarios.
+//! Scenario files that are broken as files, as JSON or as scenarios.
 
 use std::fs;
 
 use super::common::program;
 use super::{assert_says, check, fixture, refused};
 
-/// Fixture, where it is broken, and what is said of it.
+/// A fixture, the place of its fault, and the error.
 const BROKEN: &[(&str, &str, &str)] = &[
     ("truncated.json", "line 7, column 22, at evolution", "EOF"),
     (
@@ -106,7 +106,7 @@ const BROKEN: &[(&str, &str, &str)] = &[
 ];
 
 #[test]
-fn every_broken_scenario_is_refused_with_its_place() {
+fn the_error_of_every_broken_scenario_names_its_place() {
     for (name, place, what) in BROKEN {
         let said = refused(&mut check(&fixture(name)));
         assert_says(&said, &[name, place, what]);
@@ -114,7 +114,7 @@ fn every_broken_scenario_is_refused_with_its_place() {
 }
 
 #[test]
-fn every_command_that_takes_a_scenario_refuses_a_broken_one() {
+fn every_command_that_takes_a_scenario_rejects_a_broken_one() {
     let broken = fixture("unknown-field.json");
     let folder = tempfile::tempdir().unwrap();
     let tree = "(Root Wander ApproachBattery ApproachNest)";
@@ -133,18 +133,18 @@ fn every_command_that_takes_a_scenario_refuses_a_broken_one() {
     assert_eq!(
         fs::read_dir(&folder).unwrap().count(),
         0,
-        "something was made"
+        "something was created"
     );
 }
 
 #[test]
-fn the_fixture_that_all_others_are_made_from_is_valid() {
+fn the_original_of_all_fixtures_is_valid() {
     let output = super::output(&mut check(&fixture("valid.json")));
     assert!(output.status.success());
 }
 
 #[test]
-fn deep_nesting_is_refused() {
+fn deep_nesting_is_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("deep.json");
     for deep in [
@@ -162,7 +162,7 @@ fn deep_nesting_is_refused() {
 }
 
 #[test]
-fn a_file_larger_than_any_scenario_is_refused() {
+fn a_file_larger_than_any_scenario_is_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("large.json");
     let valid = fs::read_to_string(fixture("valid.json")).unwrap();
@@ -181,7 +181,7 @@ fn a_file_larger_than_any_scenario_is_refused() {
 }
 
 #[test]
-fn what_is_no_file_is_refused() {
+fn a_path_without_a_file_is_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_owned();
     let shown = path.display().to_string();
@@ -198,7 +198,7 @@ fn what_is_no_file_is_refused() {
 }
 
 #[test]
-fn trees_too_deep_and_too_long_are_refused() {
+fn trees_that_are_too_deep_or_too_long_are_rejected() {
     let evaluate = |tree: &str| refused(program().args(["evaluate", "smoke", "--tree", tree]));
     let deep =
         "(Root (Capture (FindBattery (FindBattery Wander))) Wander ApproachBattery ApproachNest)";

@@ -1,11 +1,11 @@
-//! The shell's jobs: Ctrl-Z, `fg`, `bg`.
+//! The shell's job control: Ctrl-Z, `fg`, `bg`.
 
 use portable_pty::CommandBuilder;
 
 use crate::pty::{Pty, in_environment};
 use crate::{ENDLESS, Place, leave};
 
-/// A shell with job control and a prompt that nothing else looks like.
+/// A shell with job control and an unmistakable prompt.
 fn shell() -> Pty {
     let mut command = CommandBuilder::new("/bin/sh");
     command.arg("-i");
@@ -31,7 +31,7 @@ fn start_in_shell(place: &Place) -> Pty {
 }
 
 #[test]
-fn ctrl_z_lends_the_terminal_to_the_shell_and_fg_takes_it_again() {
+fn ctrl_z_gives_the_terminal_to_the_shell_and_fg_takes_it_back() {
     let place = Place::new();
     let mut pty = start_in_shell(&place);
     for _ in 0..2 {
@@ -52,14 +52,14 @@ fn ctrl_z_lends_the_terminal_to_the_shell_and_fg_takes_it_again() {
 }
 
 #[test]
-fn in_the_background_evolution_goes_on_and_the_terminal_is_the_shells() {
+fn in_the_background_evolution_continues_and_the_shell_has_the_terminal() {
     let place = Place::new();
     let mut pty = start_in_shell(&place);
     pty.press("\u{1a}");
     pty.wait_given_back();
     pty.press("bg\n");
     place.wait_for_evolution();
-    // What is typed reaches the shell.
+    // The shell receives what is typed.
     pty.press("echo it is $((40 + 2))\n");
     pty.wait_for("it is 42");
     place.wait_for_evolution();
@@ -76,7 +76,7 @@ fn in_the_background_evolution_goes_on_and_the_terminal_is_the_shells() {
 }
 
 #[test]
-fn started_in_the_background_it_waits_for_the_terminal_and_evolution_does_not() {
+fn started_in_the_background_the_dashboard_waits_for_the_terminal_but_evolution_does_not() {
     let place = Place::new();
     let mut pty = shell();
     let program = env!("CARGO_BIN_EXE_maxq-lab");
@@ -93,7 +93,7 @@ fn started_in_the_background_it_waits_for_the_terminal_and_evolution_does_not() 
 }
 
 #[test]
-fn stopped_by_force_and_continued_it_draws_everything_again() {
+fn after_sigstop_and_sigcont_a_whole_frame_is_drawn() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.press("p");
@@ -106,7 +106,7 @@ fn stopped_by_force_and_continued_it_draws_everything_again() {
 }
 
 #[test]
-fn without_a_shell_there_is_nobody_to_continue_the_program_so_it_does_not_stop() {
+fn without_a_shell_that_could_continue_it_the_program_does_not_stop() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.press("\u{1a}");

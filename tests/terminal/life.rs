@@ -1,10 +1,10 @@
-//! Start, pause, look, step, resize, leave.
+//! A session: start, pause, step, resize, quit.
 
 use crate::pty::{Pty, program};
-use crate::{BY_HAND, ENDLESS, Place, exists, leave, wait_for_end, wait_for_good_end};
+use crate::{ENDLESS, Place, USER_STOP, exists, leave, wait_for_end, wait_for_good_end};
 
 #[test]
-fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
+fn a_run_is_paused_stepped_quit_and_resumed() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.wait("a generation", |pty| Place::generation(pty).is_some());
@@ -32,11 +32,11 @@ fn a_run_is_paused_stepped_and_left_and_is_not_lost() {
     place.assert_saved();
 
     let mut pty = place.on("resume");
-    pty.wait("the run to go on", |pty| {
+    pty.wait("the run to continue", |pty| {
         Place::generation(pty) > Some(before + 1)
     });
     pty.press("\u{3}y");
-    wait_for_good_end(&mut pty, BY_HAND);
+    wait_for_good_end(&mut pty, USER_STOP);
     place.assert_saved();
 }
 
@@ -46,7 +46,7 @@ fn the_dashboard_follows_the_size_of_the_window() {
     let mut pty = place.start(&[]);
     for (columns, rows) in [(80, 24), (200, 60), (120, 40)] {
         pty.resize(columns, rows);
-        // The hints are on the last line, whatever it is.
+        // The hints are on the last line of any size.
         let hints = |pty: &Pty| pty.screen().contains("q quit");
         pty.wait(&format!("{columns}x{rows}"), |pty| {
             hints(pty) && pty.screen().contains("RUNNING")
@@ -60,7 +60,7 @@ fn the_dashboard_follows_the_size_of_the_window() {
 }
 
 #[test]
-fn a_run_that_is_over_stays_on_the_screen_and_its_result_is_printed() {
+fn a_finished_run_stays_on_the_screen_and_its_result_is_printed_on_quit() {
     let place = Place::new();
     let arguments = place.run(&["evolution.generation_limit=3"]);
     let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
@@ -73,7 +73,7 @@ fn a_run_that_is_over_stays_on_the_screen_and_its_result_is_printed() {
 }
 
 #[test]
-fn the_mouse_is_taken_when_it_is_asked_for_and_given_back() {
+fn the_mouse_is_captured_on_request_and_released() {
     let place = Place::new();
     let mouse = |pty: &Pty| pty.raw().windows(8).any(|bytes| bytes == b"\x1b[?1006h");
     let mut pty = place.start(&["--mouse"]);
@@ -89,7 +89,7 @@ fn the_mouse_is_taken_when_it_is_asked_for_and_given_back() {
 }
 
 #[test]
-fn a_run_is_handed_over_to_a_process_without_a_terminal() {
+fn a_run_is_handed_over_to_a_background_process() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.press("q");
@@ -108,7 +108,7 @@ fn a_run_is_handed_over_to_a_process_without_a_terminal() {
 }
 
 #[test]
-fn what_is_wrong_with_a_theme_or_a_key_map_is_told_before_anything_is_computed() {
+fn an_invalid_theme_or_key_map_is_reported_before_anything_is_computed() {
     let place = Place::new();
     for wrong in [
         &["--theme", "pink"][..],

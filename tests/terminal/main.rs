@@ -1,9 +1,9 @@
-//! Contract 5, on the real program in a real terminal: the terminal is given back on every
-//! way out, and whatever happens to it the run is not lost, not slowed and not changed.
+//! Contract 5, for the real program in a real terminal: the terminal is restored on every way
+//! out, and whatever happens to it, the run is not lost, not slowed and not changed.
 //!
-//! Why it matters: the dashboard is left open all day over lines that drop, in shells that
-//! stop and continue it, in windows that change. A terminal left in raw mode, a run lost with
-//! a line, or a process that spins after its terminal has gone costs a person's work.
+//! Why it matters: the dashboard stays open all day over connections that are lost, in shells
+//! that stop and continue it, in windows that are resized. A terminal left in raw mode, a run
+//! lost with its connection, or a process that spins without its terminal costs a user's work.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used)]
@@ -28,15 +28,15 @@ use tempfile::TempDir;
 use common::{SHORT, lines, wait_until};
 use pty::{Pty, program};
 
-/// Settings with which evolution goes on until it is stopped: nothing changes in the
-/// structures, so that they do not become one.
+/// Settings with which evolution continues until it is stopped: the structures never change, so
+/// the population does not converge.
 const ENDLESS: &[&str] = &[
     "evolution.variation=none",
     "evolution.generation_limit=100000",
     "evolution.trials_per_generation=64",
 ];
 
-/// A run in a folder of its own, as it is started by every test.
+/// The folder of the run of one test.
 struct Place {
     _parent: TempDir,
     folder: PathBuf,
@@ -52,7 +52,7 @@ impl Place {
         }
     }
 
-    /// Arguments that run `smoke`, made short, with settings.
+    /// Arguments that run a short `smoke` with settings.
     fn run(&self, settings: &[&str]) -> Vec<String> {
         let mut arguments = vec!["run", "smoke", "--threads", "1", "--keep", "none", "--out"];
         arguments.push(self.text());
@@ -66,7 +66,7 @@ impl Place {
         self.folder.to_str().unwrap()
     }
 
-    /// The dashboard over an evolution that goes on, with more arguments.
+    /// The dashboard of an endless run, with more arguments.
     fn start(&self, more: &[&str]) -> Pty {
         let arguments = self.run(ENDLESS);
         let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
@@ -76,23 +76,24 @@ impl Place {
         pty
     }
 
-    /// Another command on the run folder.
+    /// Another command for the run folder.
     fn on(&self, command: &str) -> Pty {
         Pty::start(120, 40, program(&[command, self.text()]))
     }
 
-    /// Lines of the log.
+    /// The number of lines in the event log.
     fn lines(&self) -> usize {
         lines(&self.folder.join("events.jsonl"))
     }
 
-    /// Waits until evolution has gone on.
+    /// Waits for more generations.
     fn wait_for_evolution(&self) {
         let before = self.lines();
         wait_until("evolution", || self.lines() > before + 2);
     }
 
-    /// Fails if the latest state is not saved: the start and each generation are a line.
+    /// Asserts that the latest state is saved; the log has a line for the start and for each
+    /// generation.
     fn assert_saved(&self) {
         let text = fs::read_to_string(self.folder.join("checkpoint.json")).unwrap();
         let saved = Checkpoint::from_text(&text).unwrap();
@@ -108,25 +109,25 @@ impl Place {
     }
 }
 
-/// The exit code of work that a person has stopped before it was done, as by Ctrl-C.
-const BY_HAND: u32 = 130;
+/// The exit code of work that the user stopped before it was done.
+const USER_STOP: u32 = 130;
 
-/// Waits for the end of a program whose terminal may have gone.
+/// Waits for the end of a program whose terminal may be lost.
 fn wait_for_end(pty: &mut Pty, code: u32) {
     let status = pty.ended();
     assert_eq!(status.exit_code(), code, "{}", pty.screen());
 }
 
-/// Waits for the end of a program that gives the terminal back.
+/// Waits for the end of a program, and for its terminal to be restored.
 fn wait_for_good_end(pty: &mut Pty, code: u32) {
     wait_for_end(pty, code);
     pty.wait_given_back();
 }
 
-/// Answers that the run is to be saved and left.
+/// Quits and confirms.
 fn leave(pty: &mut Pty) {
     pty.press("qy");
-    wait_for_good_end(pty, BY_HAND);
+    wait_for_good_end(pty, USER_STOP);
 }
 
 fn exists(folder: &Path, name: &str) -> bool {

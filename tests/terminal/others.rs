@@ -1,4 +1,4 @@
-//! Runs of other processes and of other days; every scenario that is shipped.
+//! Runs of other processes, earlier runs, and every built-in scenario.
 
 use std::process::{Child, Stdio};
 
@@ -16,7 +16,7 @@ fn headless(place: &Place) -> Child {
 }
 
 #[test]
-fn a_run_is_watched_from_before_it_begins_until_it_dies() {
+fn a_run_is_watched_from_before_its_start_until_it_is_killed() {
     let place = Place::new();
     let mut pty = place.on("watch");
     pty.wait_for("waiting for a run");
@@ -36,14 +36,14 @@ fn a_run_is_watched_from_before_it_begins_until_it_dies() {
     pty.wait_for("RUNNING");
     pty.press("q");
     wait_for_good_end(&mut pty, 0);
-    // Watching has not touched it.
+    // Watching had no effect on the run.
     place.wait_for_evolution();
     resumed.kill().unwrap();
     resumed.wait().unwrap();
 }
 
 #[test]
-fn waiting_for_a_run_can_be_given_up() {
+fn waiting_for_a_run_can_be_cancelled() {
     let place = Place::new();
     let mut pty = place.on("watch");
     pty.wait_for("waiting for a run");
@@ -52,7 +52,7 @@ fn waiting_for_a_run_can_be_given_up() {
 }
 
 #[test]
-fn a_dead_run_is_replayed() {
+fn a_killed_run_is_replayed() {
     let place = Place::new();
     let mut run = headless(&place);
     wait_until("generations", || place.lines() > 4);
@@ -73,14 +73,14 @@ fn a_dead_run_is_replayed() {
 }
 
 #[test]
-fn a_view_in_which_nothing_moves_sends_nothing() {
+fn a_view_without_motion_sends_nothing() {
     let place = Place::new();
     let mut run = place.start(&[]);
     leave(&mut run);
     let mut pty = place.on("replay");
     pty.wait_for("UNFINISHED");
     pty.press(" ");
-    // Silence is a time in which nothing comes; messages have their time and go.
+    // Messages disappear after a while, so silence begins later.
     let mut last = (pty.bytes(), std::time::Instant::now());
     pty.wait("two seconds of silence", |pty| {
         if pty.bytes() != last.0 {
@@ -93,7 +93,7 @@ fn a_view_in_which_nothing_moves_sends_nothing() {
 }
 
 #[test]
-fn every_scenario_that_is_shipped_has_its_dashboard() {
+fn every_built_in_scenario_has_a_dashboard() {
     for embedded in EMBEDDED {
         let place = Place::new();
         let mut pty = Pty::start(

@@ -1,7 +1,7 @@
-//! A panic in any thread: the terminal is given back first, then the panic is reported.
+//! A panic in any thread: the terminal is restored first, then the panic is reported.
 //!
-//! The program has no way to be made to panic, so a test plays the program: it starts this
-//! test binary again, inside a terminal, with one test to be carried out.
+//! Nothing makes the program panic, so a test stands in for it: the test binary starts itself
+//! inside a terminal, with one test to run.
 
 use std::thread;
 
@@ -10,11 +10,11 @@ use portable_pty::CommandBuilder;
 
 use crate::pty::{Pty, in_environment};
 
-/// Says that this process is the one that panics, and where.
+/// The variable that tells a process to panic, and where.
 const WHERE: &str = "MAXQ_LAB_TEST_PANICS_IN";
 
 #[test]
-fn a_panic_gives_the_terminal_back() {
+fn a_panic_restores_the_terminal() {
     if std::env::var_os(WHERE).is_some() {
         return;
     }

@@ -1,7 +1,6 @@
-//! A terminal of this test's own: a pseudo-terminal with a program in it, whose screen
-//! can be read and whose keys can be pressed.
+//! A pseudo-terminal that runs a program: tests read its screen and press its keys.
 
-// The benchmark of the dashboard compiles this module too, and uses a part of it.
+// The benchmark of the dashboard compiles this module too and uses a part of it.
 #![allow(dead_code)]
 
 use std::io::{Read, Write};
@@ -14,28 +13,28 @@ use std::time::{Duration, Instant};
 
 use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
 
-/// The bound of every wait: generous, for a loaded machine.
+/// The limit of every wait: generous, for a loaded machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Time between two looks.
-const LOOK: Duration = Duration::from_millis(5);
+/// Time between two checks of a condition.
+const INTERVAL: Duration = Duration::from_millis(5);
 
 pub struct Pty {
     master: Option<Box<dyn MasterPty + Send>>,
     keys: Option<Box<dyn Write + Send>>,
     pub child: Box<dyn Child + Send + Sync>,
-    shown: Arc<Shown>,
+    output: Arc<Output>,
     reader: Option<JoinHandle<()>>,
     modes_before: String,
 }
 
-/// What came from the program.
-struct Shown {
+/// The output of the program.
+struct Output {
     parser: Mutex<vt100::Parser>,
     bytes: AtomicU64,
     stalled: AtomicBool,
     closing: AtomicBool,
-    /// The latest bytes, to be shown when a test fails and searched for sequences.
+    /// The latest bytes, to search for escape sequences.
     raw: Mutex<Vec<u8>>,
 }
 
@@ -52,14 +51,14 @@ fn size(columns: u16, rows: u16) -> PtySize {
     }
 }
 
-/// The program, in an environment in which nothing of this one's matters.
+/// The program, independent of the environment of the test.
 pub fn program(arguments: &[&str]) -> CommandBuilder {
     let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_maxq-lab"));
     command.args(arguments);
     in_environment(command)
 }
 
-/// A command in such an environment.
+/// A command, independent of the environment of the test.
 pub fn in_environment(mut command: CommandBuilder) -> CommandBuilder {
     command.env("TERM", "xterm-256color");
     command.env("LC_ALL", "C.UTF-8");
@@ -76,20 +75,20 @@ impl Pty {
         let keys = pair.master.take_writer().unwrap();
         let child = pair.slave.spawn_command(command).unwrap();
         drop(pair.slave);
-        let shown = Arc::new(Shown {
+        let output = Arc::new(Output {
             parser: Mutex::new(vt100::Parser::new(nonzero(rows), nonzero(columns), 0)),
             bytes: AtomicU64::new(0),
             stalled: AtomicBool::new(false),
             closing: AtomicBool::new(false),
             raw: Mutex::new(Vec::new()),
         });
-        let showing = Arc::clone(&shown);
+        let showing = Arc::clone(&output);
         let reader = thread::spawn(move || {
             let mut buffer = [0; 1 << 14];
             while let Ok(count) = reader.read(&mut buffer) {
                 showing.take(&buffer[..count]);
                 while showing.stalled.load(Ordering::SeqCst) {
-                    thread::sleep(LOOK);
+                    thread::sleep(INTERVAL);
                 }
                 if count == 0 || showing.closing.load(Ordering::SeqCst) {
                     return;
@@ -100,7 +99,7 @@ impl Pty {
             master: Some(pair.master),
             keys: Some(keys),
             child,
-            shown,
+            output,
             reader: Some(reader),
             modes_before,
         }
@@ -108,27 +107,27 @@ impl Pty {
 
     /// The text on the screen.
     pub fn screen(&self) -> String {
-        self.shown.parser.lock().unwrap().screen().contents()
+        self.output.parser.lock().unwrap().screen().contents()
     }
 
-    /// Bytes that came from the program.
+    /// The number of bytes that the program has written.
     pub fn bytes(&self) -> u64 {
-        self.shown.bytes.load(Ordering::SeqCst)
+        self.output.bytes.load(Ordering::SeqCst)
     }
 
-    /// All that came from the program and is still kept.
+    /// The latest output of the program.
     pub fn raw(&self) -> Vec<u8> {
-        self.shown.raw.lock().unwrap().clone()
+        self.output.raw.lock().unwrap().clone()
     }
 
-    /// Waits until something holds; shows the screen if it never does.
+    /// Waits until `holds`; panics with the screen if it never does.
     pub fn wait(&self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
         let begun = Instant::now();
         while !holds(self) {
             if begun.elapsed() > PATIENCE {
                 panic!("waiting for {what}; the screen is:\n{}", self.screen());
             }
-            thread::sleep(LOOK);
+            thread::sleep(INTERVAL);
         }
     }
 
@@ -154,18 +153,18 @@ impl Pty {
         keys.flush().unwrap();
     }
 
-    /// Gives the window another size.
+    /// Resizes the window.
     pub fn resize(&mut self, columns: u16, rows: u16) {
-        // Nothing that is drawn for the new size may meet a screen of the old one.
-        let mut parser = self.shown.parser.lock().unwrap();
+        // Locked, so that no output for the new size reaches a screen of the old one.
+        let mut parser = self.output.parser.lock().unwrap();
         parser.set_size(nonzero(rows), nonzero(columns));
         let master = self.master.as_ref().unwrap();
         master.resize(size(columns, rows)).unwrap();
     }
 
-    /// From now on nobody reads what the program writes, or somebody does again.
+    /// Stops reading the output of the program, or reads it again.
     pub fn stall(&self, stalled: bool) {
-        self.shown.stalled.store(stalled, Ordering::SeqCst);
+        self.output.stalled.store(stalled, Ordering::SeqCst);
     }
 
     /// The program's process id.
@@ -178,28 +177,27 @@ impl Pty {
         signal(name, self.id());
     }
 
-    /// Pulls the terminal from under the program, which must be one that draws; from a
-    /// terminal that was stalled nothing more is read. Before that the program
-    /// sees keys that nobody pressed: Enter and Ctrl-D.
+    /// Closes the terminal of the program, which must be one that draws.
+    ///
+    /// The program receives Enter and Ctrl-D first. The rest of a stalled output is not read.
     pub fn hang_up(&mut self) {
-        self.shown.closing.store(true, Ordering::SeqCst);
+        self.output.closing.store(true, Ordering::SeqCst);
         self.stall(false);
-        // The reader has the terminal until something comes, and a window of another size
-        // makes the program draw.
+        // The reader holds the terminal until there is output; a resize makes the program draw.
         let reader = self.reader.take().unwrap();
         let mut columns = 100;
         while !reader.is_finished() {
             let master = self.master.as_ref().unwrap();
             master.resize(size(columns, 40)).unwrap();
             columns = 201 - columns;
-            thread::sleep(LOOK);
+            thread::sleep(INTERVAL);
         }
         reader.join().unwrap();
         self.keys = None;
         self.master = None;
     }
 
-    /// Waits until the program has ended.
+    /// Waits for the end of the program.
     pub fn ended(&mut self) -> ExitStatus {
         let begun = Instant::now();
         loop {
@@ -212,24 +210,23 @@ impl Pty {
                     self.screen()
                 );
             }
-            thread::sleep(LOOK);
+            thread::sleep(INTERVAL);
         }
     }
 
-    /// Whether the program has the screen.
+    /// Whether the program shows the alternate screen.
     pub fn is_taken(&self) -> bool {
-        let parser = self.shown.parser.lock().unwrap();
+        let parser = self.output.parser.lock().unwrap();
         parser.screen().alternate_screen()
     }
 
-    /// Waits until the terminal is as it was before the program: the line's modes, the main
-    /// screen, the cursor, the mouse, pasting.
+    /// Waits until the terminal is restored: line modes, main screen, cursor, mouse, pasting.
     pub fn wait_given_back(&self) {
         self.wait("the terminal's modes", |pty| {
             pty.modes() == pty.modes_before
         });
         self.wait("the screen", |pty| {
-            let parser = pty.shown.parser.lock().unwrap();
+            let parser = pty.output.parser.lock().unwrap();
             let screen = parser.screen();
             !screen.alternate_screen()
                 && !screen.hide_cursor()
@@ -239,7 +236,7 @@ impl Pty {
         });
     }
 
-    /// The modes of the line, to be compared.
+    /// The line modes, as comparable text.
     pub fn modes(&self) -> String {
         modes(self.master.as_ref().unwrap().as_ref())
     }
@@ -253,7 +250,7 @@ impl Drop for Pty {
     }
 }
 
-impl Shown {
+impl Output {
     fn take(&self, bytes: &[u8]) {
         self.parser.lock().unwrap().process(bytes);
         let mut raw = self.raw.lock().unwrap();
@@ -276,13 +273,13 @@ pub fn signal(name: &str, process: u32) {
     assert!(sent.unwrap().success(), "kill -s {name} {process}");
 }
 
-/// Processor time that a process has used, in seconds; `None` when it is no more.
+/// The processor time of a process, in seconds; `None` if the process does not exist.
 pub fn processor_seconds(process: u32) -> Option<f64> {
     let stat = std::fs::read_to_string(Path::new("/proc").join(process.to_string()).join("stat"));
     let stat = stat.ok()?;
-    // The name of the program, in brackets, may hold anything.
+    // The program name, in brackets, may contain anything.
     let fields: Vec<_> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |at: usize| fields.get(at)?.parse::<f64>().ok();
-    // Linux has counted a hundred ticks a second towards programs for decades.
+    // Linux reports 100 ticks per second to programs.
     Some((ticks(11)? + ticks(12)?) / 100.0)
 }

@@ -1,4 +1,4 @@
-//! Signals, and lines that drop.
+//! Signals and lost terminals.
 
 use maxq_lab::lab::Checkpoint;
 use portable_pty::CommandBuilder;
@@ -8,7 +8,7 @@ use crate::pty::{Pty, in_environment, program};
 use crate::{ENDLESS, Place, exists, leave, wait_for_end, wait_for_good_end};
 
 #[test]
-fn a_signal_saves_the_run_and_gives_the_terminal_back() {
+fn a_signal_saves_the_run_and_restores_the_terminal() {
     for (signal, code) in [("TERM", 143), ("INT", 130)] {
         let place = Place::new();
         let mut pty = place.start(&[]);
@@ -20,7 +20,7 @@ fn a_signal_saves_the_run_and_gives_the_terminal_back() {
 }
 
 #[test]
-fn a_paused_run_hears_signals_too() {
+fn a_paused_run_reacts_to_signals() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.press("p");
@@ -31,14 +31,14 @@ fn a_paused_run_hears_signals_too() {
 }
 
 #[test]
-fn when_the_line_drops_the_run_goes_on_to_its_end() {
+fn a_run_that_loses_its_terminal_continues_to_its_end() {
     let place = Place::new();
     let mut arguments = place.run(&["evolution.variation=none"]);
     arguments.extend(["--set", "evolution.generation_limit=40"].map(String::from));
     let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
     let mut pty = Pty::start(120, 40, program(&arguments));
     pty.wait("the dashboard", Pty::is_taken);
-    // Nobody could let it go on: what waits goes on when its person is cut off.
+    // A paused run continues, because nobody else could resume it.
     pty.press("p");
     wait_until("the pulse", || exists(&place.folder, "pulse.json"));
     pty.hang_up();
@@ -47,7 +47,7 @@ fn when_the_line_drops_the_run_goes_on_to_its_end() {
 }
 
 #[test]
-fn a_signal_that_says_that_the_line_dropped_is_believed() {
+fn sighup_alone_counts_as_a_lost_terminal() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.signal("HUP");
@@ -64,7 +64,7 @@ fn a_signal_that_says_that_the_line_dropped_is_believed() {
 }
 
 #[test]
-fn when_the_line_drops_the_run_is_saved_if_that_is_wanted() {
+fn a_run_that_loses_its_terminal_is_saved_with_on_hangup_stop() {
     let place = Place::new();
     let mut pty = place.start(&["--on-hangup", "stop"]);
     pty.hang_up();
@@ -73,7 +73,7 @@ fn when_the_line_drops_the_run_is_saved_if_that_is_wanted() {
 }
 
 #[test]
-fn nobody_spins_when_the_terminal_has_gone() {
+fn no_command_spins_without_its_terminal() {
     let place = Place::new();
     let mut run = place.start(&[]);
     leave(&mut run);
@@ -86,15 +86,15 @@ fn nobody_spins_when_the_terminal_has_gone() {
 }
 
 #[test]
-fn a_run_without_a_dashboard_survives_the_line_too() {
+fn a_headless_run_survives_its_terminal_too() {
     let place = Place::new();
     let arguments = [place.run(ENDLESS), vec![String::from("--headless")]].concat();
     let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
-    goes_on_without_a_line(Pty::start(120, 40, program(&arguments)), &place);
+    continues_without_a_terminal(Pty::start(120, 40, program(&arguments)), &place);
 }
 
-/// A run is told twice that its line is gone, goes on, and is ended by another signal.
-fn goes_on_without_a_line(mut pty: Pty, place: &Place) {
+/// Asserts that a run continues after two SIGHUPs and ends on another signal.
+fn continues_without_a_terminal(mut pty: Pty, place: &Place) {
     place.wait_for_evolution();
     pty.signal("HUP");
     pty.signal("HUP");
@@ -105,19 +105,19 @@ fn goes_on_without_a_line(mut pty: Pty, place: &Place) {
 }
 
 #[test]
-fn who_was_started_to_survive_a_line_that_drops_does_whatever_is_wanted_otherwise() {
+fn an_ignored_sighup_stays_ignored_whatever_on_hangup_says() {
     let place = Place::new();
-    // What `nohup` does, and a shell that was told to.
+    // As `nohup` does.
     let mut command = CommandBuilder::new("/bin/sh");
     command.args(["-c", "trap '' HUP; exec \"$0\" \"$@\""]);
     command.arg(env!("CARGO_BIN_EXE_maxq-lab"));
     command.args(place.run(ENDLESS));
     command.args(["--headless", "--on-hangup", "stop"]);
-    goes_on_without_a_line(Pty::start(120, 40, in_environment(command)), &place);
+    continues_without_a_terminal(Pty::start(120, 40, in_environment(command)), &place);
 }
 
 #[test]
-fn two_signals_end_the_program_at_once_and_cost_no_more_than_the_generation_under_way() {
+fn two_signals_end_the_program_at_once_and_lose_at_most_the_current_generation() {
     for (first, second, codes) in [
         ("TERM", "TERM", [143, 143]),
         ("INT", "INT", [130, 130]),
@@ -144,7 +144,7 @@ fn two_signals_end_the_program_at_once_and_cost_no_more_than_the_generation_unde
 }
 
 #[test]
-fn a_signal_that_says_that_the_line_dropped_ends_the_run_if_that_is_wanted() {
+fn sighup_alone_ends_the_run_with_on_hangup_stop() {
     let place = Place::new();
     let mut pty = place.start(&["--on-hangup", "stop"]);
     place.wait_for_evolution();
@@ -154,11 +154,11 @@ fn a_signal_that_says_that_the_line_dropped_ends_the_run_if_that_is_wanted() {
 }
 
 #[test]
-fn a_line_that_drops_in_the_middle_of_a_frame_leaves_the_run_alone() {
+fn a_terminal_lost_in_the_middle_of_a_frame_does_not_harm_the_run() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.stall(true);
-    // Whole frames, until the terminal has no room for the next.
+    // Whole frames, until the terminal accepts no more.
     for columns in [200, 120].repeat(8) {
         pty.resize(columns, 60);
         place.wait_for_evolution();

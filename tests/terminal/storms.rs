@@ -1,19 +1,19 @@
-//! Rubbish for keys, storms of sizes, a terminal that takes nothing.
+//! Random keys, bursts of resizes, a terminal that accepts no output.
 
 use maxq_lab::random::{Purpose, stream};
 use rand::RngExt;
 
 use crate::common::wait_until;
-use crate::{BY_HAND, Place, wait_for_end, wait_for_good_end};
+use crate::{Place, USER_STOP, wait_for_end, wait_for_good_end};
 
 #[test]
-fn rubbish_and_storms_of_sizes_do_no_harm() {
+fn random_keys_and_bursts_of_resizes_do_no_harm() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     let mut rng = stream(1, 0, 0, Purpose::Trials);
     for _ in 0..200 {
         let length = rng.random_range(1..40);
-        // No Ctrl-C and no q: they would ask, and rubbish might answer. No Ctrl-Z.
+        // No keys that ask a question, which later random keys might answer. No Ctrl-Z.
         let rubbish: Vec<u8> = (0..length)
             .map(|_| rng.random_range(0..=255))
             .filter(|byte| ![3, b'q', b'X', b'T', b'e', 26].contains(byte))
@@ -22,22 +22,22 @@ fn rubbish_and_storms_of_sizes_do_no_harm() {
         pty.resize(rng.random_range(1..250), rng.random_range(1..80));
     }
     pty.resize(120, 40);
-    // Whatever the rubbish began is ended, and whatever it opened is closed.
+    // Leave whatever the random keys started or opened.
     pty.press("\u{1b}\u{1b}\u{1b}1");
     wait_until("the header", || pty.screen().contains("seed 1"));
     pty.press("q");
     pty.wait_for("Save the run and leave?");
     pty.press("y");
-    wait_for_good_end(&mut pty, BY_HAND);
+    wait_for_good_end(&mut pty, USER_STOP);
     place.assert_saved();
 }
 
 #[test]
-fn a_terminal_that_takes_nothing_stops_neither_evolution_nor_keys_nor_signals() {
+fn a_terminal_that_accepts_no_output_blocks_neither_evolution_nor_keys_nor_signals() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.stall(true);
-    // More frames than the terminal has room for.
+    // More frames than the terminal buffers.
     for _ in 0..20 {
         place.wait_for_evolution();
     }

@@ -1,4 +1,4 @@
-//! The table of a study's runs: opened, gone into, come back from, left.
+//! The table of the runs of a study.
 
 use std::fs;
 use std::path::Path;
@@ -8,9 +8,9 @@ use maxq_lab::report::{Arm, Base, Plan, Study};
 
 use crate::common::{SHORT, program as plain_program};
 use crate::pty::{Pty, program};
-use crate::{BY_HAND, ENDLESS, wait_for_end, wait_for_good_end, wait_until};
+use crate::{ENDLESS, USER_STOP, wait_for_end, wait_for_good_end, wait_until};
 
-/// The folder of a study of an arm with settings.
+/// Creates a study with one arm that has settings.
 fn create(settings: &[&str], seeds: &str, folder: &str) -> Study {
     let settings = SHORT.iter().chain(settings).copied().map(String::from);
     let arm = Arm {
@@ -21,7 +21,7 @@ fn create(settings: &[&str], seeds: &str, folder: &str) -> Study {
     Study::create(plan, Path::new(folder)).unwrap()
 }
 
-/// A study of one run with settings, done by another process.
+/// Another process that does a study of one run with settings.
 fn study(settings: &[&str], folder: &str) -> Child {
     create(settings, "1", folder);
     let mut command = plain_program();
@@ -32,7 +32,7 @@ fn study(settings: &[&str], folder: &str) -> Child {
 }
 
 #[test]
-fn a_run_that_is_done_is_replayed_and_come_back_from() {
+fn a_finished_run_is_replayed_and_closed() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("study");
     let folder = folder.to_str().unwrap();
@@ -54,7 +54,7 @@ fn a_run_that_is_done_is_replayed_and_come_back_from() {
 }
 
 #[test]
-fn a_run_that_goes_on_is_watched_until_it_is_broken_off() {
+fn a_running_run_is_watched_until_it_is_killed() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("study");
     let folder = folder.to_str().unwrap();
@@ -73,7 +73,7 @@ fn a_run_that_goes_on_is_watched_until_it_is_broken_off() {
 }
 
 #[test]
-fn a_folder_without_a_study_is_refused_before_the_screen_is_taken() {
+fn a_folder_without_a_study_is_rejected_before_the_screen_is_taken() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().to_str().unwrap();
     let mut pty = Pty::start(80, 24, program(&["study", "watch", folder]));
@@ -81,10 +81,9 @@ fn a_folder_without_a_study_is_refused_before_the_screen_is_taken() {
     wait_for_good_end(&mut pty, 1);
 }
 
-/// What a program does on the runs of a study is shown, asked about, and the same bytes
-/// however often it is left and gone on with.
+/// The bytes of a study are the same, however often it is interrupted and resumed.
 #[test]
-fn a_study_is_left_and_gone_on_with() {
+fn a_study_is_interrupted_and_resumed() {
     let parent = tempfile::tempdir().unwrap();
     let folder = |name: &str| parent.path().join(name).display().to_string();
     let (shown, whole) = (folder("shown"), folder("whole"));
@@ -104,8 +103,8 @@ fn a_study_is_left_and_gone_on_with() {
     let mut pty = start((120, 40));
     pty.wait_for("20 done");
     pty.wait_for("DONE");
-    assert!(pty.is_taken(), "the table stays when all is done");
-    // Nothing is left that could be stopped.
+    assert!(pty.is_taken(), "the table stays when all runs are done");
+    // Nothing is left to stop.
     pty.press("q");
     wait_for_end(&mut pty, 0);
     pty.wait_for("20 of 20 runs done");
@@ -121,7 +120,7 @@ fn a_study_is_left_and_gone_on_with() {
 }
 
 #[test]
-fn who_leaves_a_study_is_asked_what_becomes_of_it() {
+fn quitting_a_study_asks_whether_to_stop_it() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("study").display().to_string();
     create(ENDLESS, "1", &folder);
@@ -139,7 +138,7 @@ fn who_leaves_a_study_is_asked_what_becomes_of_it() {
     pty.press("q");
     pty.wait_for("Stop them?");
     pty.press("y");
-    wait_for_good_end(&mut pty, BY_HAND);
+    wait_for_good_end(&mut pty, USER_STOP);
     pty.wait_for("0 of 1 runs done");
 
     let mut pty = start();
@@ -157,7 +156,7 @@ fn who_leaves_a_study_is_asked_what_becomes_of_it() {
     };
     assert!(
         status().contains("1 running"),
-        "a dropped line stops nothing"
+        "a lost terminal stops nothing"
     );
     pty.signal("TERM");
     wait_for_end(&mut pty, 143);
@@ -165,7 +164,7 @@ fn who_leaves_a_study_is_asked_what_becomes_of_it() {
 }
 
 #[test]
-fn a_run_that_cannot_be_done_says_why_in_the_table_and_at_the_end() {
+fn the_error_of_a_failed_run_is_shown_in_the_table_and_at_the_end() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("study").display().to_string();
     let study = create(&[], "1", &folder);
