@@ -1,5 +1,5 @@
 //! A study that other engines spread over processes and machines is the study that one
-//! process does, byte for byte: GNU parallel on the lines of `study plan`, Slurm on the
+//! process does, byte for byte: GNU parallel on the lines of `study commands`, Slurm on the
 //! script of `study slurm`, and parts put together by `study merge`, in any order; a task
 //! that is preempted goes on where it was.
 //!

@@ -296,7 +296,7 @@ fn what_is_neither_plan_nor_study_nor_scenario_is_told_what_there_is() {
         ),
         (
             &["smoke", "--only", "21"],
-            "--only: found \"21\"; allowed: 1 to 20, or SCENARIO/ARM/seed-N as 'study plan'",
+            "--only: found \"21\"; allowed: 1 to 20, or SCENARIO/ARM/seed-N as 'study commands'",
         ),
     ] {
         let mut command = program();

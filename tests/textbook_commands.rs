@@ -55,11 +55,7 @@ fn options_without_an_effect_are_rejected() {
     );
     assert!(
         !given.contains("until first optimal"),
-<<<<<<< HEAD
-        "no policy learns: {given}"
-=======
         "td0 learns no policy: {given}"
->>>>>>> 7951f0e (Rewrite headers, names and comments of the command line's tests)
     );
     let learned = succeeds(&["learn", "cliff", "--algorithm", "q-learning"]);
     assert!(learned.contains("until first optimal"), "{learned}");

@@ -14,7 +14,7 @@ use crate::scenario::{EMBEDDED, Scenario};
 /// A scenario and changes to its settings.
 #[derive(Clone, Debug, Args)]
 pub(super) struct ScenarioArgs {
-    /// A scenario file, or the name of a built-in scenario ('maxq-lab scenarios' lists them).
+    /// Scenario file, or the name of a built-in scenario ('maxq-lab scenarios' lists them).
     scenario: String,
 
     /// Change a setting of the scenario; may be repeated.
@@ -55,7 +55,10 @@ pub(super) struct StartArg {
 impl StartArg {
     /// The state in the world of `experiment`, if one was given.
     pub(super) fn read(&self, experiment: &dyn AnyExperiment) -> Result<Option<Start>, Failure> {
-        let start = self.start.as_deref().map(|text| Start::read(text, experiment));
+        let start = self
+            .start
+            .as_deref()
+            .map(|text| Start::read(text, experiment));
         let start = start.transpose();
         start.map_err(|error| format!("--start: {error}").into())
     }
@@ -99,7 +102,7 @@ pub(super) struct ExecutionArgs {
     ///
     /// 'maxq-lab watch' shows a run that continues; 'maxq-lab resume' resumes a run that was
     /// saved.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_name = "ACTION", value_enum, default_value_t)]
     pub(super) on_hangup: OnHangup,
 
     /// Format of the result.

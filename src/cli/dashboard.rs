@@ -23,7 +23,7 @@ use crate::lab::inspection::{Archive, Start};
 pub(super) struct AppearanceArgs {
     /// Colour theme: dark, light, high-contrast, mono, or one from the configuration file
     /// [default: from the configuration file; mono if NO_COLOR is set; otherwise dark].
-    #[arg(long)]
+    #[arg(long, value_name = "NAME")]
     theme: Option<String>,
 
     /// Draw with ASCII characters only [default: if the locale is not UTF-8].

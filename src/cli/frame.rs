@@ -39,7 +39,7 @@ pub(super) struct Args {
 
     /// View: overview, arena, hierarchy, fitness, policy, population, status, inspector,
     /// policy-map, stepper, or compare.
-    #[arg(long, value_name = "V", default_value = "overview")]
+    #[arg(long, value_name = "VIEW", default_value = "overview")]
     view: ViewId,
 
     /// Generation to show [default: the last].
@@ -49,7 +49,7 @@ pub(super) struct Args {
     /// Seconds that the rollout plays before the keys are pressed.
     #[arg(
         long,
-        value_name = "S",
+        value_name = "SECONDS",
         default_value_t = 0.0,
         allow_negative_numbers = true
     )]

@@ -278,7 +278,11 @@ fn reached(learned: &Learned, mean: Option<Mean>, of: fn(&Course) -> Option<u64>
 
 /// Says in how few of the repeats `holds` is true.
 fn only(learned: &Learned, holds: impl Fn(&Course) -> bool) -> String {
-    let count = learned.repeats.iter().filter(|course| holds(course)).count();
+    let count = learned
+        .repeats
+        .iter()
+        .filter(|course| holds(course))
+        .count();
     let all = counted(learned.repeats.len() as u64, "repeat");
     format!("in only {count} of {all}")
 }

@@ -97,17 +97,17 @@ Examples:
   maxq-lab schema --of plan > plan.schema.json")]
 pub(super) struct SchemaArgs {
     /// Kind of file.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_name = "KIND", value_enum, default_value_t)]
     of: FileKind,
 }
 
 /// A kind of file that has a schema.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum FileKind {
-    /// A scenario.
+    /// Scenario file.
     #[default]
     Scenario,
-    /// A study plan.
+    /// Study plan.
     Plan,
 }
 

@@ -178,7 +178,9 @@ impl Study {
             false => Ok(found),
             true => Err(StudyError::NoSuchRun {
                 found: name.to_owned(),
-                allowed: format!("1 to {last}, or SCENARIO/ARM/seed-N as 'study plan' lists them"),
+                allowed: format!(
+                    "1 to {last}, or SCENARIO/ARM/seed-N as 'study commands' lists them"
+                ),
             }),
         }
     }

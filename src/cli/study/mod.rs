@@ -72,7 +72,7 @@ pub(super) struct Args {
     headless: bool,
 
     /// What to do when the terminal is lost (SIGHUP): continue without one, or save and exit.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_name = "ACTION", value_enum, default_value_t)]
     on_hangup: OnHangup,
 
     #[command(flatten)]
@@ -82,8 +82,8 @@ pub(super) struct Args {
 /// What a study runs, and where.
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct StudyArgs {
-    /// A study plan (a file or a built-in name), the folder of a study to resume, or scenarios
-    /// (files or built-in names).
+    /// Study plan (file or built-in name), folder of a study to resume, or scenarios (files or
+    /// built-in names).
     #[arg(required = true, value_name = "PLAN|DIR|SCENARIO")]
     what: Vec<String>,
 

@@ -20,7 +20,7 @@ pub(super) struct StatusArgs {
     /// Study folder.
     dir: PathBuf,
 
-    /// ExecutionArgs to report.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -38,7 +38,7 @@ pub(super) struct ReportArgs {
     /// Study folder.
     dir: PathBuf,
 
-    /// ExecutionArgs to print it.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
