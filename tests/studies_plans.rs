@@ -117,7 +117,7 @@ const BROKEN: &[(&str, &str, &str, bool)] = &[
     (
         "unknown-scenario",
         "at scenarios[0]",
-        "no scenario \"smoked\": there is no such file, and the embedded scenarios are",
+        "no scenario \"smoked\": there is no such file, and the built-in scenarios are",
         false,
     ),
     (
@@ -262,7 +262,7 @@ fn a_study_s_folder_is_a_plan() {
     );
     let refused = study(&["thesis", "--seeds", "1..2"]);
     assert!(
-        stderr(&refused).contains("allowed: beside scenarios"),
+        stderr(&refused).contains("allowed: with scenarios"),
         "{}",
         stderr(&refused)
     );
@@ -283,7 +283,7 @@ fn what_is_neither_plan_nor_study_nor_scenario_is_told_what_there_is() {
     for (arguments, expected) in [
         (
             &["evolving-taksi"][..],
-            "embedded plans are evolving-taxi, ",
+            "a built-in plan (evolving-taxi, ",
         ),
         (
             &["empty"],

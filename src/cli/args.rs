@@ -58,7 +58,7 @@ impl StartArg {
         let start = self
             .start
             .as_deref()
-            .map(|text| Start::read(text, experiment));
+            .map(|text| experiment.read_start(text));
         let start = start.transpose();
         start.map_err(|error| format!("--start: {error}").into())
     }

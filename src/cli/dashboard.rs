@@ -194,7 +194,8 @@ impl DashboardSettings {
         };
         let name = folder.display().to_string();
         let (look, keys) = (self.look.clone(), self.keys.clone());
-        let app = App::new(ViewContext::new(what, name, mode, look, keys)).starting_at(self.start);
+        let app =
+            App::new(ViewContext::new(experiment, name, mode, look, keys)).starting_at(self.start);
         let archive = Archive::new(experiment, folder, controls);
         let session = Session::new(app, archive, source, folder, terminal, self.fps)?;
         Ok(session)

@@ -10,7 +10,7 @@ use crate::scenario::ScenarioError;
 #[derive(Debug, Error)]
 pub enum PlanError {
     /// There is no such plan.
-    #[error("no plan {name:?}: there is no such file, and the embedded plans are {allowed}")]
+    #[error("no plan {name:?}: there is no such file, and the built-in plans are {allowed}")]
     NotFound {
         /// The name asked for.
         name: String,

@@ -137,7 +137,7 @@ impl Scenario {
 pub enum ScenarioError {
     /// Neither a file nor an embedded scenario has this name.
     #[error(
-        "no scenario {name:?}: there is no such file, and the embedded scenarios are {}",
+        "no scenario {name:?}: there is no such file, and the built-in scenarios are {}",
         embedded::names(EMBEDDED)
     )]
     NotFound {
