@@ -37,7 +37,7 @@ fn plan(arms: &[Base]) -> Plan {
         warmup: 1,
         trials: 2,
         repeats: 4,
-        banks: 2,
+        primitive_sets: 2,
     };
     plan
 }

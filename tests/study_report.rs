@@ -16,7 +16,7 @@ use std::process::Command;
 use common::{output, program, short, stderr, stdout, threads};
 use maxq_lab::report::figures::{FigureNumber, Panel, RunSource};
 use maxq_lab::report::{
-    Arm, Base, Facts, Findings, FreshFacts, Judged, Moment, Plan, Study, Verdict, Winner,
+    Arm, Base, Facts, Findings, FreshFacts, JudgedClaim, Moment, Plan, Study, Verdict, Winner,
 };
 
 const SEEDS: u64 = 30;
@@ -108,8 +108,8 @@ fn all(study: &Study, minimal: [u64; 3], steps: [f64; 3]) -> Vec<Facts> {
     all
 }
 
-fn judged<'f>(findings: &'f Findings, claim: &str, scenario: &str) -> &'f Judged {
-    let is = |judged: &&Judged| judged.claim == claim && judged.scenario == scenario;
+fn judged<'f>(findings: &'f Findings, claim: &str, scenario: &str) -> &'f JudgedClaim {
+    let is = |judged: &&JudgedClaim| judged.claim == claim && judged.scenario == scenario;
     findings.claims.iter().find(is).unwrap()
 }
 
@@ -210,9 +210,9 @@ fn a_single_seed_has_no_interval_and_decides_nothing() {
     let findings = Findings::from_facts(&study, &one);
     assert!(
         findings
-            .kinds
+            .groups
             .iter()
-            .flat_map(|kind| &kind.metrics)
+            .flat_map(|group| &group.metrics)
             .all(|m| m.mean.interval.is_none())
     );
     assert!(
@@ -232,8 +232,14 @@ fn a_single_seed_has_no_interval_and_decides_nothing() {
     );
 }
 
-/// The rows of a CSV text; fails where one has another number of fields.
+/// Returns the rows of a CSV text. Its first line says what made it, and all rows must have the
+/// same number of fields.
 fn rows(csv: &str) -> Vec<Vec<String>> {
+    let (provenance, csv) = csv.split_once('\n').unwrap();
+    assert!(
+        provenance.starts_with("# ") && provenance.contains("maxq-lab "),
+        "{provenance}"
+    );
     let mut rows = vec![vec![String::new()]];
     let mut quoted = false;
     for c in csv.trim_end_matches('\n').chars() {
@@ -378,7 +384,7 @@ fn every_figure_of_a_run_is_drawn_and_says_what_made_it() {
         let Panel::Chart(chart) = panel else {
             panic!("a hierarchy")
         };
-        assert_eq!(chart.whole, Some([0.0, 1.0]));
+        assert_eq!(chart.y_range, Some([0.0, 1.0]));
         for series in chart.series {
             let known = *marks.entry(series.name.clone()).or_insert(series.mark);
             assert_eq!(known, series.mark, "{}", series.name);

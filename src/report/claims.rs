@@ -1,93 +1,96 @@
-//! Claims, and how they are judged: always against what comes out by drift.
+//! The claims of the thesis, and how the runs of a study decide on them.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::facts::Facts;
+use super::facts::{Facts, Moment};
 use super::statistics::{Count, fisher};
 
-/// Below this a p-value counts as evidence.
+/// Significance level: a smaller p-value counts as evidence.
 pub const SIGNIFICANCE: f64 = 0.05;
 
-/// Something that the thesis says comes out.
+/// A claim of the thesis.
 #[derive(Clone, Copy, Debug)]
 pub struct Claim {
-    /// A short name.
+    /// Its short name.
     pub id: &'static str,
-    /// Where it is claimed.
+    /// Section of the thesis that makes it.
     pub source: &'static str,
-    /// What is claimed, as it is tested.
+    /// The claim, in the form in which it is tested.
     pub statement: &'static str,
-    /// What it is about.
+    /// The scenarios that it is about.
     pub scope: Scope,
-    /// Whether the runs of one seed show it; none where they cannot tell.
+    /// Returns whether the runs of one seed agree with it; `None` if they cannot decide.
     pub shows: fn(&Evidence<'_>) -> Option<bool>,
 }
 
-/// What a claim is about.
+/// The scenarios that a claim is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
-    /// Every scenario of its own.
+    /// Each scenario of the study, judged separately.
     Each,
-    /// These scenarios, together.
+    /// These scenarios, judged together.
     Named(&'static [&'static str]),
 }
 
 /// The runs of one seed and arm.
 #[derive(Clone, Debug)]
 pub struct Evidence<'e> {
-    /// By scenario.
+    /// The runs, by scenario.
     pub runs: BTreeMap<&'e str, &'e Facts>,
-    /// The runs with the hand-designed hierarchy, by scenario.
+    /// The runs of the same seed with the hand-designed hierarchy, by scenario.
     pub designed: BTreeMap<&'e str, &'e Facts>,
-    /// The scenario that a claim on each is judged for.
+    /// The scenario for which a claim about each scenario is judged.
     pub here: &'e str,
 }
 
 impl Evidence<'_> {
-    /// The run of a scenario.
+    /// Returns the run of a scenario.
     #[must_use]
     pub fn at(&self, scenario: &str) -> Option<&Facts> {
         self.runs.get(scenario).copied()
     }
 
-    /// The run of the scenario that the claim is judged for.
+    /// Returns the run of the scenario for which the claim is judged.
     #[must_use]
     pub fn run(&self) -> Option<&Facts> {
         self.at(self.here)
     }
 }
 
-/// What becomes of a claim.
+/// The decision on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Most runs show it, and more than the control's.
+    /// Most seeds show it, and more than under the control.
     Holds,
-    /// Most runs do not show it, or fewer than the control's do.
+    /// Most seeds do not show it, or fewer than under the control.
     DoesNotHold,
-    /// Most runs show it, and so do most of the control's.
+    /// Most seeds show it, but so do most under the control.
     ByDriftAlone,
-    /// These runs are too few to tell.
+    /// There are too few seeds to decide.
     Undecided,
 }
 
 impl Verdict {
-    /// For people.
+    /// Returns the verdict in words.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             Self::Holds => "holds",
             Self::DoesNotHold => "does not hold",
-            Self::ByDriftAlone => "comes out by drift alone",
+            Self::ByDriftAlone => "explained by drift alone",
             Self::Undecided => "undecided at this n",
         }
     }
 }
 
-/// Judges a claim. *Most* means that the 95 % interval of the share lies above one half;
-/// more and fewer are by Fisher's exact test.
+/// Judges a claim by the seeds that show it in the tested arm and in the control arm.
+///
+/// *Most* seeds show it if the exact 95 % interval of their proportion lies above one half.
+/// *More* or *fewer* seeds than under the control show it if the proportions differ by Fisher's
+/// exact test at the level [`SIGNIFICANCE`].
 #[must_use]
 pub fn judge(tested: Count, control: Count) -> Verdict {
     if tested.n == 0 || control.n == 0 {
@@ -106,27 +109,27 @@ pub fn judge(tested: Count, control: Count) -> Verdict {
     }
 }
 
-/// The claims of Thesis 4.3 and 4.5, as questions that the runs of a seed answer.
+/// The claims of Thesis 4.3 and 4.5, as questions that the runs of one seed answer.
 pub const CLAIMS: &[Claim] = &[
     Claim {
         id: "few-composites",
         source: "4.3",
-        statement: "a simple structure: at most 4 of the 7 composite subtasks, the root counted",
+        statement: "the winner is simple: it has at most 4 of the 7 composite subtasks, including the root",
         scope: Scope::Named(&["environment-1"]),
         shows: |e| Some(e.at("environment-1")?.winner.composites.len() <= 4),
     },
     Claim {
         id: "one-primitive",
         source: "4.3",
-        statement: "one primitive subtask for each state type",
+        statement: "the winner has one selectable primitive subtask in every state type",
         scope: Scope::Named(&["environment-1"]),
         shows: |e| Some(e.at("environment-1")?.winner.is_minimal()),
     },
     Claim {
         id: "deliver-above-capture",
         source: "4.3",
-        statement: "the deliver side has more composite and selectable primitive subtasks than the \
-                    capture side",
+        statement: "the winner's deliver side has more composite and selectable primitive subtasks \
+                    than its capture side",
         scope: Scope::Named(&["environment-2"]),
         shows: |e| {
             let [capture, deliver] = e.at("environment-2")?.winner.sides()?;
@@ -136,7 +139,8 @@ pub const CLAIMS: &[Claim] = &[
     Claim {
         id: "capture-simple",
         source: "4.5.1",
-        statement: "the capture side is simple: one primitive subtask in state types 1 and 2",
+        statement: "the winner's capture side is simple: it has one selectable primitive subtask in state \
+                    types 1 and 2",
         scope: Scope::Named(&["environment-2"]),
         shows: |e| {
             let selectable = &e.at("environment-2")?.winner.selectable;
@@ -146,14 +150,14 @@ pub const CLAIMS: &[Claim] = &[
     Claim {
         id: "deliver-complete",
         source: "4.5.1",
-        statement: "the deliver side has all 3 composite and at least 4 primitive subtasks",
+        statement: "the winner's deliver side has all 3 composite and at least 4 primitive subtasks",
         scope: Scope::Named(&["environment-2"]),
         shows: |e| e.at("environment-2")?.winner.deliver_is_complete(),
     },
     Claim {
         id: "nearly-all-subtasks",
         source: "4.3",
-        statement: "nearly all subtasks: at least 10 of the 12",
+        statement: "the winner has nearly all subtasks: at least 10 of the 12",
         scope: Scope::Named(&["environment-3"]),
         shows: |e| {
             let winner = &e.at("environment-3")?.winner;
@@ -163,8 +167,8 @@ pub const CLAIMS: &[Claim] = &[
     Claim {
         id: "primitives-grow",
         source: "4.5.1",
-        statement: "more selectable primitive subtasks, over all state types, in environment 3 than in \
-                    environment 1",
+        statement: "the winner has more selectable primitive subtasks, summed over state types, in \
+                    environment 3 than in environment 1",
         scope: Scope::Named(&["environment-1", "environment-3"]),
         shows: |e| {
             let of = |name| Some(e.at(name)?.winner.selectable_in_all());
@@ -174,7 +178,7 @@ pub const CLAIMS: &[Claim] = &[
     Claim {
         id: "composites-grow",
         source: "4.5.1",
-        statement: "more composite subtasks in environment 3 than in environment 1",
+        statement: "the winner has more composite subtasks in environment 3 than in environment 1",
         scope: Scope::Named(&["environment-1", "environment-3"]),
         shows: |e| {
             let of = |name| Some(e.at(name)?.winner.composites.len());
@@ -184,15 +188,15 @@ pub const CLAIMS: &[Claim] = &[
     Claim {
         id: "good-hierarchy",
         source: "4.3",
-        statement: "on fresh trials the winner is no slower than the complete hand-designed hierarchy",
+        statement: "on fresh trials, the winner is at least as fast as the complete hand-designed hierarchy",
         scope: Scope::Each,
         shows: |e| Some(e.run()?.fresh.steps <= e.designed.get(e.here)?.fresh.steps),
     },
     Claim {
         id: "structures-converge",
         source: "4.5.2",
-        statement: "the structural difference to the best falls to less than half in the second half of \
-                    the generations, and ends at zero",
+        statement: "the mean structural difference to the best hierarchy is, over the second half of the \
+                    generations, less than half of its initial size, and it ends at zero",
         scope: Scope::Each,
         shows: |e| {
             let run = e.run()?;
@@ -204,8 +208,8 @@ pub const CLAIMS: &[Claim] = &[
     Claim {
         id: "best-stays",
         source: "4.5.3",
-        statement: "the best fitness of the last tenth of the generations is within 20 % of that of the \
-                    first tenth",
+        statement: "the best fitness of the last tenth of the generations is within 20 % of the best \
+                    fitness of the first tenth",
         scope: Scope::Each,
         shows: |e| {
             let run = e.run()?;
@@ -219,39 +223,34 @@ pub const CLAIMS: &[Claim] = &[
     Claim {
         id: "middle-improves",
         source: "4.5.3",
-        statement: "the middle of the population by fitness improves by a quarter or more from the first \
-                    to the last tenth of the generations",
+        statement: "the middle individual by fitness improves by at least 25 % from the first to the \
+                    last tenth of the generations",
         scope: Scope::Each,
         shows: |e| {
             let run = e.run()?;
-            let of = |m: &super::facts::Moment| m.middle_steps;
+            let of = |m: &Moment| m.middle_steps;
             Some(run.over(0.9, 1.0, of) <= 0.75 * run.over(0.0, 0.1, of))
         },
     },
     Claim {
         id: "two-cases",
         source: "4.5.4",
-        statement: "no state type has more than two selectable primitive subtasks",
+        statement: "the winner has at most two selectable primitive subtasks in every state type",
         scope: Scope::Each,
         shows: |e| {
-            Some(
-                e.run()?
-                    .winner
-                    .selectable
-                    .iter()
-                    .all(|names| names.len() <= 2),
-            )
+            let selectable = &e.run()?.winner.selectable;
+            Some(selectable.iter().all(|names| names.len() <= 2))
         },
     },
     Claim {
         id: "policies-settle",
         source: "4.5.4",
-        statement: "selection probabilities change from generation to generation less than half as much in \
-                    the last quarter as in the first",
+        statement: "in the last quarter of the generations, selection probabilities change less than half \
+                    as much from generation to generation as in the first quarter",
         scope: Scope::Each,
         shows: |e| {
             let run = e.run()?;
-            let of = |m: &super::facts::Moment| m.policy_change;
+            let of = |m: &Moment| m.policy_change;
             let moves = run.course.len() >= 8;
             moves.then(|| run.over(0.75, 1.0, of) < 0.5 * run.over(0.0, 0.25, of))
         },
@@ -267,15 +266,15 @@ mod tests {
     }
 
     #[test]
-    fn a_claim_is_judged_by_its_own_share_and_by_the_controls() {
+    fn a_claim_is_judged_by_its_proportion_and_by_the_control() {
         assert_eq!(judge(of(28), of(9)), Verdict::Holds);
         assert_eq!(judge(of(28), of(27)), Verdict::ByDriftAlone);
         assert_eq!(judge(of(3), of(2)), Verdict::DoesNotHold);
-        // As often as by chance, so often that it is not rare: nothing is known.
+        // About half of the seeds, and no clear difference to the control.
         assert_eq!(judge(of(16), of(11)), Verdict::Undecided);
-        // Frequent, but by drift it is more frequent still.
+        // Frequent, but significantly more frequent by drift.
         assert_eq!(judge(of(20), of(29)), Verdict::DoesNotHold);
-        // Two of two say nothing.
+        // Two seeds are too few.
         let few = Count { shown: 2, n: 2 };
         assert_eq!(judge(few, Count { shown: 0, n: 2 }), Verdict::Undecided);
         assert_eq!(judge(of(30), Count { shown: 0, n: 0 }), Verdict::Undecided);

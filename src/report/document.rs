@@ -1,44 +1,28 @@
-//! The report of a study for people: Markdown.
+//! The report of a study as Markdown.
 
 use super::claims::Verdict;
-use super::findings::{Comparison, Findings, Judged, Kind, Summary};
+use super::findings::{Comparison, Findings, JudgedClaim, MetricSummary, RunGroup};
 use super::statistics::{Count, Estimate, Interval, RESAMPLES};
 use super::table::{Table, p_value, short};
 
-/// The report.
+/// Returns the report.
 #[must_use]
 pub fn markdown(findings: &Findings) -> String {
-    let mut text = format!(
-        "# Study {}\n\n{}.\n\n",
-        findings.provenance.study,
-        findings.provenance.line()
-    );
+    let provenance = &findings.provenance;
+    let mut text = format!("# Study {}\n\n{}.\n\n", provenance.study, provenance.line());
     text += &claims(&findings.claims);
     text += &comparisons(&findings.comparisons);
-    let mut scenarios: Vec<&str> = findings
-        .kinds
-        .iter()
-        .map(|kind| kind.scenario.as_str())
-        .collect();
-    scenarios.dedup();
-    for scenario in scenarios {
-        let kinds: Vec<_> = findings
-            .kinds
-            .iter()
-            .filter(|kind| kind.scenario == scenario)
-            .collect();
-        text += &format!("## {scenario}\n\n");
-        text += &numbers("Interquartile mean [95 % interval]", &kinds, |summary| {
-            summary.iqm
-        });
-        text += &numbers("Mean [95 % interval]", &kinds, |summary| summary.mean);
-        text += &counts(&kinds);
-        text += &structures(&kinds);
+    for groups in findings.groups.chunk_by(|a, b| a.scenario == b.scenario) {
+        text += &format!("## {}\n\n", groups[0].scenario);
+        text += &metrics("Interquartile mean [95 % interval]", groups, |m| m.iqm);
+        text += &metrics("Mean [95 % interval]", groups, |m| m.mean);
+        text += &counts(groups);
+        text += &structures(groups);
     }
     text
 }
 
-fn claims(claims: &[Judged]) -> String {
+fn claims(claims: &[JudgedClaim]) -> String {
     if claims.is_empty() {
         return String::new();
     }
@@ -51,8 +35,8 @@ fn claims(claims: &[Judged]) -> String {
             judged.source.to_owned(),
             judged.scenario.clone(),
             format!("{} {}", count(judged.tested), percent(judged.interval)),
-            judged.control.map_or_else(|| String::from("-"), count),
-            judged.p.map_or_else(|| String::from("-"), p_value),
+            or_dash(judged.control, count),
+            or_dash(judged.p, p_value),
             judged
                 .verdict
                 .map_or("no control", Verdict::words)
@@ -60,14 +44,17 @@ fn claims(claims: &[Judged]) -> String {
         ]);
     }
     format!(
-        "## Claims\n\nThe seed is the unit; in brackets the exact 95 % interval of the share. A claim *holds* if \
-         more than half of the seeds show it (the interval lies above one half) and more than under \
-         the control (Fisher's exact test, p < 0.05); it *comes out by drift alone* if more than half \
-         show it and the control's do too; it *does not hold* if fewer than half show it (the interval \
-         lies below), or fewer than the control's. Across scenarios, runs of one seed are held against \
-         each other; of the control's, runs of different seeds, because without selection a seed leads \
-         to the same structures everywhere. {} verdicts: about one in twenty tests is \
-         significant by chance.\n\n{}\n",
+        "## Claims\n\nThe unit of observation is the seed. Brackets hold the exact 95 % interval of the \
+         proportion of seeds that show a claim, and p is the two-sided p-value of Fisher's exact test \
+         against the control. A claim *holds* if most seeds show it (the interval lies above one half) \
+         and significantly more than under the control (p < 0.05). It is *explained by drift alone* if \
+         most seeds show it, and most seeds of the control too, without a significant difference. It \
+         *does not hold* if most seeds do not show it (the interval lies below one half), or \
+         significantly fewer than under the control. Otherwise it is *undecided at this n*. A claim \
+         that compares scenarios is judged within each seed; for the control, runs of different seeds \
+         are compared, because without selection a seed leads to the same structures in every \
+         scenario. The table has {} tests and no correction for multiple testing: at this level, about \
+         one test in twenty is significant by chance.\n\n{}\n",
         claims.len(),
         table.markdown()
     )
@@ -93,103 +80,106 @@ fn comparisons(comparisons: &[Comparison]) -> String {
             row.arm.clone(),
             row.against.clone(),
             row.improvement.n.to_string(),
-            row.difference_iqm
-                .map_or_else(|| String::from("-"), estimate),
-            row.difference_mean
-                .map_or_else(|| String::from("-"), estimate),
+            or_dash(row.difference_iqm, estimate),
+            or_dash(row.difference_mean, estimate),
             estimate(row.improvement),
-            row.p.map_or_else(|| String::from("-"), p_value),
+            or_dash(row.p, p_value),
         ]);
     }
     format!(
-        "## Arms compared\n\nBy the structures of the winners on fresh trials, with fresh hierarchies and freshly \
-         trained primitive subtasks; differences of trial lengths in time steps, paired by seed, \
-         negative where the arm is faster; 95 % intervals by {RESAMPLES} bootstrap resamples of the \
-         seeds, for *all* stratified by scenario; p by the Mann-Whitney test.\n\n{}\n",
+        "## Comparison of arms\n\nArms are compared by the mean trial length of the winners' structures, \
+         evaluated with new hierarchies, newly trained primitive subtasks and new trials. Differences \
+         are in time steps, paired by seed, and negative if the arm is faster than the one it is \
+         compared with. The probability of improvement is the probability that a winner of the arm is \
+         faster. Brackets hold percentile-bootstrap 95 % intervals from {RESAMPLES} resamples of the \
+         seeds, stratified by scenario in the rows *all*. p is the two-sided p-value of the \
+         Mann-Whitney test.\n\n{}\n",
         table.markdown()
     )
 }
 
-fn numbers(title: &str, kinds: &[&Kind], of: fn(&Summary) -> Estimate) -> String {
-    let mut table = Table::default();
-    table.header.push(title.to_owned());
-    table.header.extend(
-        kinds
-            .iter()
-            .map(|kind| format!("{} (n = {})", kind.arm, kind.n)),
-    );
-    let names = kinds
+/// Returns a table with one row for each metric and one column for each arm.
+fn metrics(title: &str, groups: &[RunGroup], of: fn(&MetricSummary) -> Estimate) -> String {
+    let columns = groups
         .iter()
-        .flat_map(|kind| kind.metrics.iter().map(|summary| &summary.metric));
-    for name in in_order(names) {
-        let mut row = vec![name.replace('_', " ")];
-        row.extend(kinds.iter().map(|kind| {
-            let found = kind.metrics.iter().find(|summary| summary.metric == *name);
-            found.map_or_else(|| String::from("-"), |summary| estimate(of(summary)))
-        }));
-        table.rows.push(row);
-    }
-    table.markdown() + "\n"
+        .map(|group| format!("{} (n = {})", group.arm, group.n));
+    let rows = groups.iter().map(|group| {
+        let cells = group.metrics.iter();
+        cells
+            .map(|summary| (summary.metric.replace('_', " "), estimate(of(summary))))
+            .collect()
+    });
+    by_arm(title, columns, rows.collect())
 }
 
-fn counts(kinds: &[&Kind]) -> String {
-    let mut table = Table::default();
-    table
-        .header
-        .push(String::from("Runs [95 % interval of the share]"));
-    table
-        .header
-        .extend(kinds.iter().map(|kind| kind.arm.clone()));
-    let names = kinds
-        .iter()
-        .flat_map(|kind| kind.counts.iter().map(|counted| &counted.what));
-    for name in in_order(names) {
-        let mut row = vec![name.clone()];
-        row.extend(kinds.iter().map(|kind| {
-            let found = kind.counts.iter().find(|counted| counted.what == *name);
-            found.map_or_else(
-                || String::from("-"),
-                |counted| format!("{} {}", count(counted.count), percent(counted.interval)),
+/// Returns a table with one row for each trait and one column for each arm.
+fn counts(groups: &[RunGroup]) -> String {
+    let columns = groups.iter().map(|group| group.arm.clone());
+    let rows = groups.iter().map(|group| {
+        let cells = group.counts.iter().map(|counted| {
+            let share = percent(counted.interval);
+            (
+                counted.what.clone(),
+                format!("{} {share}", count(counted.count)),
             )
+        });
+        cells.collect()
+    });
+    by_arm(
+        "Runs [95 % interval of the proportion]",
+        columns,
+        rows.collect(),
+    )
+}
+
+/// Returns a table with one column for each arm. `cells` holds the named cells of each column;
+/// a name that a column does not have gets a dash.
+fn by_arm(
+    title: &str,
+    columns: impl Iterator<Item = String>,
+    cells: Vec<Vec<(String, String)>>,
+) -> String {
+    let mut table = Table::new(&[title]);
+    table.header.extend(columns);
+    let mut names: Vec<&String> = Vec::new();
+    for (name, _) in cells.iter().flatten() {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    for name in names {
+        let mut row = vec![name.clone()];
+        row.extend(cells.iter().map(|column| {
+            let found = column.iter().find(|(other, _)| other == name);
+            or_dash(found, |(_, cell)| cell.clone())
         }));
         table.rows.push(row);
     }
     table.markdown() + "\n"
 }
 
-fn structures(kinds: &[&Kind]) -> String {
+fn structures(groups: &[RunGroup]) -> String {
     let mut text = String::from(
-        "Most frequent final structures, children sorted, repeated primitive subtasks left out:\n\n",
+        "The most frequent final structures, with children sorted and repeated primitive subtasks \
+         left out:\n\n",
     );
-    for kind in kinds {
-        for (structure, times) in &kind.structures {
-            text += &format!("- {}: {times} of {}: `{structure}`\n", kind.arm, kind.n);
+    for group in groups {
+        for (structure, times) in &group.structures {
+            text += &format!("- {}: {times} of {}: `{structure}`\n", group.arm, group.n);
         }
     }
     text + "\n"
 }
 
-fn in_order<'n>(names: impl Iterator<Item = &'n String>) -> Vec<&'n String> {
-    let mut once: Vec<&String> = Vec::new();
-    for name in names {
-        if !once.contains(&name) {
-            once.push(name);
-        }
-    }
-    once
+fn or_dash<T>(value: Option<T>, show: impl Fn(T) -> String) -> String {
+    value.map_or_else(|| String::from("-"), show)
 }
 
 fn estimate(estimate: Estimate) -> String {
+    let value = short(estimate.value);
     match estimate.interval {
-        Some(Interval { low, high }) => {
-            format!(
-                "{} [{}, {}]",
-                short(estimate.value),
-                short(low),
-                short(high)
-            )
-        }
-        None => short(estimate.value),
+        Some(Interval { low, high }) => format!("{value} [{}, {}]", short(low), short(high)),
+        None => value,
     }
 }
 

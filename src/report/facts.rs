@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::arm::{Arm, Base};
 use super::single::{SingleError, check_evaluation, check_origin, fresh, summary};
 use super::study::{RunId, Study};
 use crate::evolution::{GenerationRecord, RankedRecord, TreeError};
@@ -139,6 +140,35 @@ impl Facts {
         let end = ((n as f64 * to).ceil() as usize).clamp(first + 1, n.max(first + 1));
         let part = self.course.get(first..end.min(n)).unwrap_or_default();
         part.iter().map(of).sum::<f64>() / part.len() as f64
+    }
+}
+
+/// The finished runs of a study.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StudyRuns<'s> {
+    /// The study.
+    pub(super) study: &'s Study,
+    /// Its finished runs.
+    pub(super) all: &'s [Facts],
+}
+
+impl<'s> StudyRuns<'s> {
+    /// Returns the runs of a scenario and arm in the order of their seeds.
+    pub(super) fn of(self, scenario: usize, arm: usize) -> Vec<&'s Facts> {
+        let of = |facts: &&Facts| (facts.run.scenario, facts.run.arm) == (scenario, arm);
+        let mut runs: Vec<_> = self.all.iter().filter(of).collect();
+        runs.sort_by_key(|facts| facts.run.seed);
+        runs
+    }
+
+    /// Returns the index of the first arm that `is` holds for.
+    pub(super) fn arm(self, is: impl Fn(&Arm) -> bool) -> Option<usize> {
+        self.study.plan.arms.iter().position(is)
+    }
+
+    /// Returns the index of the tested arm: the first arm that evolves as the scenario says.
+    pub(super) fn tested_arm(self) -> Option<usize> {
+        self.arm(|arm| arm.base == Base::Evolved)
     }
 }
 

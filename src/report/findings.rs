@@ -1,4 +1,4 @@
-//! What the runs of a study say together.
+//! What the runs of a study show together: summaries, comparisons of arms, verdicts on claims.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::arm::Base;
 use super::claims::{CLAIMS, Claim, Evidence, Scope, Verdict, judge};
-use super::facts::Facts;
+use super::facts::{Facts, StudyRuns};
 use super::metrics::{metrics, traits};
 use super::provenance::Provenance;
 use super::statistics::{
@@ -14,43 +14,44 @@ use super::statistics::{
 };
 use super::study::Study;
 
-/// Final structures that are listed of each kind of run.
+/// Number of final structures that are listed for each scenario and arm.
 const STRUCTURES_LISTED: usize = 3;
 
 /// Everything that is reported of a study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Findings {
-    /// What it was made from.
+    /// What the findings were made from.
     pub provenance: Provenance,
     /// Every scenario and arm.
-    pub kinds: Vec<Kind>,
-    /// The tested arm against every other.
+    #[serde(rename = "kinds")]
+    pub groups: Vec<RunGroup>,
+    /// The tested arm against every other arm.
     pub comparisons: Vec<Comparison>,
-    /// The claims.
-    pub claims: Vec<Judged>,
+    /// The claims and the verdicts on them.
+    pub claims: Vec<JudgedClaim>,
 }
 
-/// The runs of one scenario and arm.
+/// The finished runs of one scenario and arm.
 #[derive(Clone, Debug, Serialize)]
-pub struct Kind {
+pub struct RunGroup {
     /// Name of the scenario.
     pub scenario: String,
     /// Name of the arm.
     pub arm: String,
-    /// Runs that are done.
+    /// Number of runs.
     pub n: usize,
-    /// Numbers over seeds.
-    pub metrics: Vec<Summary>,
-    /// Counts over seeds.
-    pub counts: Vec<Counted>,
-    /// The most frequent final structures.
+    /// Metrics, summarised over seeds.
+    pub metrics: Vec<MetricSummary>,
+    /// Traits, counted over seeds.
+    pub counts: Vec<TraitCount>,
+    /// The most frequent final structures, each with its number of runs.
     pub structures: Vec<(String, usize)>,
 }
 
-/// One number over seeds.
+/// A metric, summarised over seeds.
 #[derive(Clone, Debug, Serialize)]
-pub struct Summary {
-    /// Its name, with its unit.
+pub struct MetricSummary {
+    /// Its name, which ends in its unit.
     pub metric: String,
     /// Interquartile mean.
     pub iqm: Estimate,
@@ -58,264 +59,93 @@ pub struct Summary {
     pub mean: Estimate,
 }
 
-/// One count over seeds.
+/// A trait, counted over seeds.
 #[derive(Clone, Debug, Serialize)]
-pub struct Counted {
-    /// What is counted.
+pub struct TraitCount {
+    /// The trait.
     pub what: String,
-    /// How many show it.
+    /// Number of runs that have it.
     pub count: Count,
-    /// The exact 95 % interval of their share.
+    /// Exact 95 % interval of the proportion.
     pub interval: Interval,
 }
 
-/// Two arms, compared by how good their winners are on fresh trials, paired by seed.
+/// Two arms, compared by the trial lengths of their winners on fresh trials, paired by seed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
-    /// The scenario; `all` for all of them, each a stratum.
+    /// The scenario; `all` for all scenarios together, each a stratum.
     pub scenario: String,
     /// The arm.
     pub arm: String,
     /// The arm that it is compared with.
     pub against: String,
-    /// Interquartile mean of the differences in trial length, arm minus other, in time
-    /// steps; for one scenario.
+    /// Interquartile mean of the differences in trial length, arm minus other, in time steps;
+    /// `None` for all scenarios together.
     pub difference_iqm: Option<Estimate>,
-    /// Mean of the differences.
+    /// Mean of the differences in trial length; `None` for all scenarios together.
     pub difference_mean: Option<Estimate>,
-    /// Probability that a winner of the arm is faster than one of the other.
+    /// Probability that a winner of the arm is faster than a winner of the other arm.
     pub improvement: Estimate,
-    /// Mann-Whitney test, two-sided; for one scenario.
+    /// Two-sided p-value of the Mann-Whitney test; `None` for all scenarios together.
     pub p: Option<f64>,
 }
 
-/// A claim and what became of it.
+/// A claim and the verdict on it.
 #[derive(Clone, Debug, Serialize)]
-pub struct Judged {
+pub struct JudgedClaim {
     /// Its short name.
     pub claim: &'static str,
-    /// Where the thesis makes it.
+    /// Section of the thesis that makes it.
     pub source: &'static str,
-    /// What is claimed.
+    /// The claim, in the form in which it is tested.
     pub statement: &'static str,
-    /// For which scenarios.
+    /// The scenarios for which it is judged.
     pub scenario: String,
-    /// How many seeds show it, in the tested arm.
+    /// Number of seeds of the tested arm that show it.
     pub tested: Count,
-    /// The exact 95 % interval of their share.
+    /// Exact 95 % interval of their proportion.
     pub interval: Interval,
-    /// How many seeds show it in the control arm; none where the plan has none.
+    /// Number of seeds of the control arm that show it; `None` if the plan has no control.
     pub control: Option<Count>,
-    /// Fisher's exact test of the two, two-sided.
+    /// Two-sided p-value of Fisher's exact test of the tested arm against the control.
     pub p: Option<f64>,
-    /// The verdict; none without a control.
+    /// The verdict; `None` if the plan has no control.
     pub verdict: Option<Verdict>,
-    /// How many seeds show it in every arm.
+    /// Number of seeds that show it, for every arm.
     pub arms: Vec<(String, Count)>,
 }
 
 impl Findings {
-    /// What these runs say.
+    /// Computes the findings of these runs.
     #[must_use]
     pub fn from_facts(study: &Study, all: &[Facts]) -> Self {
-        let view = View { study, all };
+        let runs = StudyRuns { study, all };
         Self {
             provenance: Provenance::of(study, all),
-            kinds: view.kinds(),
-            comparisons: view.comparisons(),
-            claims: view.claims(),
+            groups: groups(runs),
+            comparisons: comparisons(runs),
+            claims: claims(runs),
         }
     }
 }
 
-struct View<'s> {
-    study: &'s Study,
-    all: &'s [Facts],
-}
-
-impl<'s> View<'s> {
-    fn of_kind(&self, scenario: usize, arm: usize) -> Vec<&Facts> {
-        let of = |facts: &&Facts| (facts.run.scenario, facts.run.arm) == (scenario, arm);
-        let mut runs: Vec<_> = self.all.iter().filter(of).collect();
-        runs.sort_by_key(|facts| facts.run.seed);
-        runs
-    }
-
-    fn kinds(&self) -> Vec<Kind> {
-        let plan = &self.study.plan;
-        let mut kinds = Vec::new();
-        for (index, scenario) in plan.scenarios.iter().enumerate() {
-            for (arm_index, arm) in plan.arms.iter().enumerate() {
-                let runs = self.of_kind(index, arm_index);
-                kinds.push(kind(&scenario.name, &arm.name, &runs));
-            }
-        }
-        kinds
-    }
-
-    /// The arm that claims are tested on: the first that evolves.
-    fn tested(&self) -> Option<usize> {
-        self.study
-            .plan
-            .arms
-            .iter()
-            .position(|arm| arm.base == Base::Evolved)
-    }
-
-    fn control(&self) -> Option<usize> {
-        let name = self.study.plan.control.as_ref()?;
-        self.study
-            .plan
-            .arms
-            .iter()
-            .position(|arm| arm.name == *name)
-    }
-
-    fn comparisons(&self) -> Vec<Comparison> {
-        let Some(tested) = self.tested() else {
-            return Vec::new();
-        };
-        let others = (0..self.study.plan.arms.len()).filter(|&arm| arm != tested);
-        others
-            .flat_map(|other| self.compare(tested, other))
-            .collect()
-    }
-
-    fn compare(&self, arm: usize, other: usize) -> Vec<Comparison> {
-        let plan = &self.study.plan;
-        let names = [arm, other].map(|arm| plan.arms[arm].name.clone());
-        let mut strata = Vec::new();
-        let mut comparisons = Vec::new();
-        for (index, scenario) in plan.scenarios.iter().enumerate() {
-            let pairs = self.pairs(index, arm, other);
-            comparisons.extend(compare_pairs(&scenario.name, &names, &pairs));
-            strata.push(pairs);
-        }
-        if strata.len() > 1
-            && let Some(improvement) = Estimate::stratified(&strata, improvement)
-        {
-            let [arm, against] = names;
-            comparisons.push(Comparison {
-                scenario: String::from("all"),
-                arm,
-                against,
-                difference_iqm: None,
-                difference_mean: None,
-                improvement,
-                p: None,
-            });
-        }
-        comparisons
-    }
-
-    /// Trial lengths of the winners of two arms, seed by seed.
-    fn pairs(&self, scenario: usize, arm: usize, other: usize) -> Vec<[f64; 2]> {
-        let others = self.of_kind(scenario, other);
-        let pair = |own: &Facts| {
-            let other = others.iter().find(|other| other.run.seed == own.run.seed)?;
-            Some([own.fresh.steps, other.fresh.steps])
-        };
-        self.of_kind(scenario, arm)
-            .into_iter()
-            .filter_map(pair)
-            .collect()
-    }
-
-    fn claims(&self) -> Vec<Judged> {
-        let scenarios = &self.study.plan.scenarios;
-        let has = |name: &&str| scenarios.iter().any(|scenario| scenario.name == *name);
-        let mut judged = Vec::new();
-        for claim in CLAIMS {
-            match claim.scope {
-                Scope::Named(names) if names.iter().all(has) => {
-                    judged.extend(self.judge(
-                        claim,
-                        names.first().copied().unwrap_or_default(),
-                        names.join(", "),
-                    ));
-                }
-                Scope::Named(_) => {}
-                Scope::Each => judged.extend(scenarios.iter().filter_map(|scenario| {
-                    self.judge(claim, &scenario.name, scenario.name.clone())
-                })),
-            }
-        }
-        judged
-    }
-
-    fn judge(&self, claim: &Claim, here: &str, scenario: String) -> Option<Judged> {
-        let tested_arm = self.tested()?;
-        let tested = self.count(claim, here, tested_arm);
-        let control = self.control().map(|arm| self.count(claim, here, arm));
-        let arms = self.study.plan.arms.iter().enumerate();
-        let arms = arms.map(|(index, arm)| (arm.name.clone(), self.count(claim, here, index)));
-        (tested.n > 0).then(|| Judged {
-            claim: claim.id,
-            source: claim.source,
-            statement: claim.statement,
-            scenario,
-            tested,
-            interval: tested.interval(),
-            control,
-            p: control.map(|control| fisher(tested, control)),
-            verdict: control.map(|control| judge(tested, control)),
-            arms: arms.collect(),
+fn groups(runs: StudyRuns<'_>) -> Vec<RunGroup> {
+    let plan = &runs.study.plan;
+    let scenarios = plan.scenarios.iter().enumerate();
+    let groups = scenarios.flat_map(|(index, scenario)| {
+        let arms = plan.arms.iter().enumerate();
+        arms.map(move |(arm_index, arm)| {
+            group(&scenario.name, &arm.name, &runs.of(index, arm_index))
         })
-    }
-
-    /// How many seeds of an arm show what is claimed.
-    fn count(&self, claim: &Claim, here: &str, arm: usize) -> Count {
-        let seeds: Vec<_> = self.study.plan.seeds.iter().collect();
-        let across = matches!(claim.scope, Scope::Named(names) if names.len() > 1);
-        let drifts = self.study.plan.arms[arm].base == Base::RandomSelection;
-        Count::of(seeds.iter().enumerate().filter_map(|(place, &seed)| {
-            let evidence = Evidence {
-                runs: match across && drifts {
-                    true => self.staggered(&seeds, place, arm),
-                    false => self.by_scenario(seed, arm),
-                },
-                designed: self.designed(seed),
-                here,
-            };
-            (claim.shows)(&evidence)
-        }))
-    }
-
-    /// One run of each scenario, each of the next seed. Without selection a seed leads to
-    /// the same structures in every scenario, so that holding these against each other
-    /// would show no difference where chance makes one.
-    fn staggered(&self, seeds: &[u64], place: usize, arm: usize) -> BTreeMap<&'s str, &'s Facts> {
-        let scenarios = self.study.plan.scenarios.iter().enumerate();
-        let runs = scenarios.filter_map(|(shift, scenario)| {
-            let seed = seeds[(place + shift) % seeds.len()];
-            let of = self.by_scenario(seed, arm);
-            of.get_key_value(scenario.name.as_str())
-                .map(|(&name, &facts)| (name, facts))
-        });
-        runs.collect()
-    }
-
-    fn by_scenario(&self, seed: u64, arm: usize) -> BTreeMap<&'s str, &'s Facts> {
-        let of = |facts: &&Facts| facts.run.seed == seed && facts.run.arm == arm;
-        let named = |facts: &'s Facts| (self.study.scenario(&facts.run).name.as_str(), facts);
-        self.all.iter().filter(of).map(named).collect()
-    }
-
-    fn designed(&self, seed: u64) -> BTreeMap<&'s str, &'s Facts> {
-        let arms = &self.study.plan.arms;
-        let arm = arms.iter().position(|arm| arm.base == Base::HandDesigned);
-        arm.map(|arm| self.by_scenario(seed, arm))
-            .unwrap_or_default()
-    }
+    });
+    groups.collect()
 }
 
-fn kind(scenario: &str, arm: &str, runs: &[&Facts]) -> Kind {
-    let types = runs
-        .first()
-        .map_or(0, |facts| facts.winner.selectable.len());
+fn group(scenario: &str, arm: &str, runs: &[&Facts]) -> RunGroup {
+    let types = runs.first().map_or(0, |run| run.winner.selectable.len());
     let summaries = metrics(types).into_iter().filter_map(|metric| {
         let values: Vec<_> = runs.iter().filter_map(|facts| (metric.of)(facts)).collect();
-        Some(Summary {
+        Some(MetricSummary {
             metric: metric.name,
             iqm: Estimate::of(&values, iqm)?,
             mean: Estimate::of(&values, mean)?,
@@ -323,23 +153,20 @@ fn kind(scenario: &str, arm: &str, runs: &[&Facts]) -> Kind {
     });
     let counts = traits(types).into_iter().filter_map(|of| {
         let count = Count::of(runs.iter().filter_map(|facts| (of.of)(facts)));
-        (count.n > 0).then(|| Counted {
+        (count.n > 0).then(|| TraitCount {
             what: of.name,
             count,
             interval: count.interval(),
         })
     });
-    let mut structures: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut times: BTreeMap<&String, usize> = BTreeMap::new();
     for facts in runs {
-        *structures.entry(&facts.winner.structure).or_default() += 1;
+        *times.entry(&facts.winner.structure).or_default() += 1;
     }
-    let mut structures: Vec<_> = structures
-        .into_iter()
-        .map(|(s, n)| (s.to_owned(), n))
-        .collect();
+    let mut structures: Vec<_> = times.into_iter().map(|(s, n)| (s.clone(), n)).collect();
     structures.sort_by(|(a, n), (b, m)| m.cmp(n).then(a.cmp(b)));
     structures.truncate(STRUCTURES_LISTED);
-    Kind {
+    RunGroup {
         scenario: scenario.to_owned(),
         arm: arm.to_owned(),
         n: runs.len(),
@@ -347,6 +174,58 @@ fn kind(scenario: &str, arm: &str, runs: &[&Facts]) -> Kind {
         counts: counts.collect(),
         structures,
     }
+}
+
+/// Compares the tested arm with every other arm.
+fn comparisons(runs: StudyRuns<'_>) -> Vec<Comparison> {
+    let Some(tested) = runs.tested_arm() else {
+        return Vec::new();
+    };
+    let others = (0..runs.study.plan.arms.len()).filter(|&arm| arm != tested);
+    others
+        .flat_map(|other| compare(runs, tested, other))
+        .collect()
+}
+
+/// Compares two arms in each scenario and, if there are several, in all of them together.
+fn compare(runs: StudyRuns<'_>, arm: usize, other: usize) -> Vec<Comparison> {
+    let plan = &runs.study.plan;
+    let names = [arm, other].map(|arm| plan.arms[arm].name.clone());
+    let mut strata = Vec::new();
+    let mut comparisons = Vec::new();
+    for (index, scenario) in plan.scenarios.iter().enumerate() {
+        let pairs = pairs(runs, index, arm, other);
+        comparisons.extend(compare_pairs(&scenario.name, &names, &pairs));
+        strata.push(pairs);
+    }
+    if strata.len() > 1
+        && let Some(improvement) = Estimate::stratified(&strata, improvement)
+    {
+        let [arm, against] = names;
+        comparisons.push(Comparison {
+            scenario: String::from("all"),
+            arm,
+            against,
+            difference_iqm: None,
+            difference_mean: None,
+            improvement,
+            p: None,
+        });
+    }
+    comparisons
+}
+
+/// Returns the fresh trial lengths of the winners of two arms, paired by seed.
+fn pairs(runs: StudyRuns<'_>, scenario: usize, arm: usize, other: usize) -> Vec<[f64; 2]> {
+    let others = runs.of(scenario, other);
+    let pair = |own: &Facts| {
+        let other = others.iter().find(|other| other.run.seed == own.run.seed)?;
+        Some([own.fresh.steps, other.fresh.steps])
+    };
+    runs.of(scenario, arm)
+        .into_iter()
+        .filter_map(pair)
+        .collect()
 }
 
 fn compare_pairs(
@@ -368,18 +247,110 @@ fn compare_pairs(
     })
 }
 
+/// Returns the probability of improvement, averaged over strata.
+fn improvement(strata: &[Vec<[f64; 2]>]) -> f64 {
+    let each = strata.iter().map(|pairs| {
+        let [own, other] = columns(pairs);
+        probability_of_improvement(&own, &other)
+    });
+    mean(&each.collect::<Vec<_>>())
+}
+
 fn columns(pairs: &[[f64; 2]]) -> [Vec<f64>; 2] {
     [0, 1].map(|side| pairs.iter().map(|pair| pair[side]).collect())
 }
 
-/// Probability of improvement, averaged over strata.
-fn improvement(strata: &[Vec<[f64; 2]>]) -> f64 {
-    let each: Vec<_> = strata
-        .iter()
-        .map(|pairs| {
-            let [own, other] = columns(pairs);
-            probability_of_improvement(&own, &other)
-        })
-        .collect();
-    mean(&each)
+/// Judges every claim whose scenarios the study has.
+fn claims(runs: StudyRuns<'_>) -> Vec<JudgedClaim> {
+    let scenarios = &runs.study.plan.scenarios;
+    let has = |name: &&str| scenarios.iter().any(|scenario| scenario.name == *name);
+    let mut judged = Vec::new();
+    for claim in CLAIMS {
+        match claim.scope {
+            Scope::Named(names) if names.iter().all(has) => {
+                let here = names.first().copied().unwrap_or_default();
+                judged.extend(judge_claim(runs, claim, here, names.join(", ")));
+            }
+            Scope::Named(_) => {}
+            Scope::Each => judged.extend(scenarios.iter().filter_map(|scenario| {
+                judge_claim(runs, claim, &scenario.name, scenario.name.clone())
+            })),
+        }
+    }
+    judged
+}
+
+fn judge_claim(
+    runs: StudyRuns<'_>,
+    claim: &Claim,
+    here: &str,
+    scenario: String,
+) -> Option<JudgedClaim> {
+    let plan = &runs.study.plan;
+    let tested = count(runs, claim, here, runs.tested_arm()?);
+    let control = plan.control.as_ref();
+    let control = control.and_then(|name| runs.arm(|arm| arm.name == *name));
+    let control = control.map(|arm| count(runs, claim, here, arm));
+    let arms = plan.arms.iter().enumerate();
+    let arms = arms.map(|(index, arm)| (arm.name.clone(), count(runs, claim, here, index)));
+    (tested.n > 0).then(|| JudgedClaim {
+        claim: claim.id,
+        source: claim.source,
+        statement: claim.statement,
+        scenario,
+        tested,
+        interval: tested.interval(),
+        control,
+        p: control.map(|control| fisher(tested, control)),
+        verdict: control.map(|control| judge(tested, control)),
+        arms: arms.collect(),
+    })
+}
+
+/// Counts the seeds of an arm that show a claim.
+fn count(runs: StudyRuns<'_>, claim: &Claim, here: &str, arm: usize) -> Count {
+    let plan = &runs.study.plan;
+    let seeds: Vec<_> = plan.seeds.iter().collect();
+    let across = matches!(claim.scope, Scope::Named(names) if names.len() > 1);
+    let drifts = plan.arms[arm].base == Base::RandomSelection;
+    let designed = runs.arm(|arm| arm.base == Base::HandDesigned);
+    Count::of(seeds.iter().enumerate().filter_map(|(place, &seed)| {
+        let evidence = Evidence {
+            runs: if across && drifts {
+                staggered(runs, &seeds, place, arm)
+            } else {
+                by_scenario(runs, seed, arm)
+            },
+            designed: designed.map_or_else(BTreeMap::new, |arm| by_scenario(runs, seed, arm)),
+            here,
+        };
+        (claim.shows)(&evidence)
+    }))
+}
+
+/// Returns one run of each scenario, each with the seed after that of the scenario before.
+///
+/// Without selection, a seed leads to the same structures in every scenario. A comparison of
+/// scenarios within one seed would then find no difference where chance alone makes one.
+fn staggered<'s>(
+    runs: StudyRuns<'s>,
+    seeds: &[u64],
+    place: usize,
+    arm: usize,
+) -> BTreeMap<&'s str, &'s Facts> {
+    let scenarios = runs.study.plan.scenarios.iter().enumerate();
+    let found = scenarios.filter_map(|(shift, scenario)| {
+        let seed = seeds[(place + shift) % seeds.len()];
+        by_scenario(runs, seed, arm).remove_entry(scenario.name.as_str())
+    });
+    found.collect()
+}
+
+/// Returns the runs of a seed and arm, by scenario.
+fn by_scenario(runs: StudyRuns<'_>, seed: u64, arm: usize) -> BTreeMap<&str, &Facts> {
+    let of = |facts: &&Facts| facts.run.seed == seed && facts.run.arm == arm;
+    let found = runs.all.iter().filter(of);
+    found
+        .map(|facts| (runs.study.scenario(&facts.run).name.as_str(), facts))
+        .collect()
 }

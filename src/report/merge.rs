@@ -1,4 +1,4 @@
-//! Studies that were done in parts are put together.
+//! Merges the parts of a study that was done in several folders.
 
 use std::cmp::Reverse;
 use std::fs;
@@ -12,20 +12,20 @@ use super::study::{RunId, Study, StudyError};
 use crate::files::{FileError, sync_folder};
 use crate::lab::{FolderError, RunFolder};
 
-/// Files of a run that follow from the plan alone.
+/// Files of a run that depend on the plan alone.
 const DETERMINED: [&str; 3] = ["events.jsonl", "checkpoint.json", FRESH];
 
-/// Files that belong to a process at work on a run.
+/// Files of the process that works on a run; they are not copied.
 const LEFT_BEHIND: [&str; 2] = ["lock", "pulse.json"];
 
-/// Why studies cannot be put together.
+/// Why studies cannot be merged.
 #[derive(Debug, Error)]
 pub enum MergeError {
-    /// A part, or the study to be made, cannot be used.
+    /// A part, or the merged study, cannot be used.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// A part is of another plan than the first.
-    #[error("{path}: is a study of another plan than {first}; allowed: parts of one study")]
+    /// A part has another plan than the first.
+    #[error("{path}: found another plan than in {first}; allowed: parts of one study")]
     Another {
         /// The part.
         path: String,
@@ -35,13 +35,13 @@ pub enum MergeError {
     /// A run cannot be read.
     #[error(transparent)]
     Run(#[from] SingleError),
-    /// A run cannot be copied: somebody works on it.
+    /// A run cannot be copied because a process is working on it.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// Two parts have done a run and do not agree.
+    /// Two parts hold different results of a finished run.
     #[error(
-        "{one} and {other}: {file} is not the same; were they done by different versions of the \
-         program?"
+        "{one} and {other}: {file} is not the same; different versions of the program may have \
+         made them"
     )]
     Differ {
         /// A run folder.
@@ -51,32 +51,33 @@ pub enum MergeError {
         /// The file.
         file: &'static str,
     },
-    /// The operating system refused.
+    /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
 }
 
-/// A folder that holds some of a run.
+/// A folder that holds at least the beginning of a run.
 struct Candidate {
     folder: PathBuf,
     done: bool,
-    /// Whether evolution is over.
+    /// Whether evolution has ended.
     over: bool,
-    /// Bytes of events.
+    /// Size of `events.jsonl` in bytes.
     length: u64,
     manifest: Vec<u8>,
 }
 
-/// Puts the parts of a study together in the folder `out`, which may be a part itself.
+/// Merges the parts of a study in the folder `out`, which may itself be a part. Returns the number
+/// of runs that have been started.
 ///
-/// Of every run the folder that is furthest is taken. Where several have done it, what
-/// follows from the plan must be the same bytes in all; `run.json` and `summary.json`, which
-/// say where and when a run was done, are those that come first as bytes. So the order of
-/// the parts does not matter, and all else is as if one machine had done the study.
-/// Returns how many runs there are.
+/// Of every run, the part that is furthest is copied. If several parts have finished it, the files
+/// that depend on the plan alone must be the same bytes in all of them. `run.json` and
+/// `summary.json` also say where and when the run was done; of these the bytewise smallest is
+/// copied. The order of the parts therefore does not matter, and the result is the study that one
+/// machine would have done.
 ///
 /// # Errors
-/// When parts are of different plans, disagree, or are worked on.
+/// When parts have different plans, disagree, or are being worked on.
 pub fn merge(parts: &[PathBuf], out: &Path) -> Result<usize, MergeError> {
     let mut studies = Vec::new();
     for part in parts {
@@ -110,12 +111,9 @@ fn merge_run(
     for folder in folders {
         candidates.extend(Candidate::of(folder)?);
     }
-    let done: Vec<_> = candidates
-        .iter()
-        .filter(|candidate| candidate.done)
-        .collect();
-    if let Some((first, others)) = done.split_first() {
-        for other in others {
+    let mut done = candidates.iter().filter(|candidate| candidate.done);
+    if let Some(first) = done.next() {
+        for other in done {
             check_same(&first.folder, &other.folder)?;
         }
     }
@@ -125,10 +123,11 @@ fn merge_run(
     };
     let target = merged.run_folder(run);
     if best.folder != target {
-        // A run that is not done may be gone on with at this moment.
-        let _held = match best.done {
-            true => None,
-            false => Some(RunFolder::open(&best.folder)?),
+        // The lock keeps other processes from resuming an unfinished run meanwhile.
+        let _lock = if best.done {
+            None
+        } else {
+            Some(RunFolder::open(&best.folder)?)
         };
         replace(&best.folder, &target)?;
     }
@@ -153,7 +152,7 @@ impl Candidate {
         }))
     }
 
-    /// Sorts what is furthest first.
+    /// Returns the sort key that puts the candidate that is furthest first.
     fn key(&self) -> (Reverse<bool>, Reverse<bool>, Reverse<u64>, &[u8]) {
         (
             Reverse(self.done),
@@ -181,7 +180,7 @@ fn check_same(one: &Path, other: &Path) -> Result<(), MergeError> {
     Ok(())
 }
 
-/// Puts a copy of a run folder in the place of another; it appears in one step.
+/// Replaces the run folder `to` by a copy of `from`, in one step.
 fn replace(from: &Path, to: &Path) -> Result<(), MergeError> {
     let parent = to.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(parent).map_err(|error| refused(parent, error))?;

@@ -26,8 +26,8 @@ pub mod statistics;
 mod status;
 mod study;
 pub mod study_export;
+mod study_tables;
 mod table;
-mod tables;
 mod winner;
 mod write;
 
@@ -35,7 +35,7 @@ pub use arm::{Arm, Base};
 pub use claims::{CLAIMS, Claim, Evidence, Scope, Verdict, judge};
 pub use controls::StudyControls;
 pub use facts::{Facts, FreshFacts, Moment, Winner};
-pub use findings::{Comparison, Counted, Findings, Judged, Kind, Summary};
+pub use findings::{Comparison, Findings, JudgedClaim, MetricSummary, RunGroup, TraitCount};
 pub use merge::{MergeError, merge};
 pub use numbers::Numbers;
 pub use pace::Pace;

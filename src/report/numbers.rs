@@ -1,4 +1,4 @@
-//! Lists of whole numbers as people write them: `1..30`, `1..10,15`.
+//! Lists of whole numbers as people write them, such as `1..30` or `1..10,15`.
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Most numbers that a list may hold.
 const MAX_COUNT: u64 = 1_000_000;
 
-/// Whole numbers in the order given, each once: numbers and ranges, both ends counted,
+/// Distinct whole numbers in the order given. The text form has numbers and inclusive ranges,
 /// separated by commas.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
@@ -18,12 +18,12 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// All numbers.
+    /// Returns the numbers in order.
     pub fn iter(&self) -> impl Iterator<Item = u64> + '_ {
         self.ranges.iter().cloned().flatten()
     }
 
-    /// How many numbers these are.
+    /// Returns how many numbers there are.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.ranges
@@ -32,7 +32,7 @@ impl Numbers {
             .sum()
     }
 
-    /// Whether `number` is among them.
+    /// Returns whether `number` is among them.
     #[must_use]
     pub fn contains(&self, number: u64) -> bool {
         self.ranges.iter().any(|range| range.contains(&number))
@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lists_are_read_as_people_write_them() {
+    fn numbers_and_ranges_are_read() {
         let of = |text: &str| text.parse::<Numbers>().unwrap().iter().collect::<Vec<_>>();
         assert_eq!(of("1..3"), [1, 2, 3]);
         assert_eq!(of("1..=3, 7"), [1, 2, 3, 7]);
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_list_is_refused() {
+    fn anything_else_is_refused() {
         for text in [
             "",
             "a",

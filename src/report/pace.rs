@@ -1,20 +1,21 @@
-//! How long the rest of a study will take.
+//! An estimate of the time that the rest of a study takes.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::study::RunId;
 
-/// Times of the runs that were done, and what they say of those that are left.
+/// The durations of finished runs, and the estimate for the remaining ones.
 #[derive(Clone, Debug, Default)]
 pub struct Pace {
-    /// Number and seconds of the runs done, by scenario and arm.
+    /// Number and total seconds of finished runs, by scenario and arm.
     done: BTreeMap<(usize, usize), (u32, f64)>,
+    /// Number of remaining runs, by scenario and arm.
     left: BTreeMap<(usize, usize), u32>,
 }
 
 impl Pace {
-    /// With these runs left.
+    /// Creates the estimate with these runs remaining.
     #[must_use]
     pub fn of(runs: &[RunId]) -> Self {
         let mut pace = Self::default();
@@ -24,7 +25,7 @@ impl Pace {
         pace
     }
 
-    /// A run is over; how long it took is told if it was done.
+    /// Notes that a run is no longer remaining, and its duration if it was finished here.
     pub fn note(&mut self, run: &RunId, took: Option<Duration>) {
         let kind = (run.scenario, run.arm);
         if let Some(left) = self.left.get_mut(&kind) {
@@ -37,9 +38,11 @@ impl Pace {
         }
     }
 
-    /// The time that the runs left will take, `jobs` at a time: each as long as those of
-    /// its scenario and arm took, or as all took where none of these is done. None before
-    /// any run is done.
+    /// Returns the expected time for the remaining runs with `jobs` at a time. A run is expected
+    /// to take the mean time of the finished runs of its scenario and arm, or of all finished
+    /// runs if there are none of its kind.
+    ///
+    /// Returns `None` before any run has finished.
     #[must_use]
     pub fn left(&self, jobs: usize) -> Option<Duration> {
         let mean = |count: u32, seconds: f64| (count > 0).then(|| seconds / f64::from(count));
@@ -80,7 +83,7 @@ mod tests {
         assert_eq!(pace.left(2), None);
         pace.note(&run(0, 1), Some(Duration::from_secs(2)));
         pace.note(&run(1, 1), Some(Duration::from_secs(10)));
-        // Left: one of 2 s, one of 10 s, one of a kind not seen, so of 6 s.
+        // Remaining: one of 2 s, one of 10 s, and one of a new kind, expected to take 6 s.
         assert_eq!(pace.left(2), Some(Duration::from_secs(9)));
         pace.note(&run(2, 1), None);
         assert_eq!(pace.left(1), Some(Duration::from_secs(12)));

@@ -1,4 +1,4 @@
-//! A plan: which scenarios, arms and seeds a study has.
+//! Plans: the scenarios, arms and seeds of a study.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -11,90 +11,90 @@ use super::arm::{Arm, Base};
 use super::numbers::Numbers;
 use super::plan_error::PlanError;
 use crate::files::{FileError, parse_json, read_text, stated_format};
+use crate::rules::{NAMES, is_name};
 use crate::scenario::{EMBEDDED_PLANS, Scenario, ScenarioError};
 
 /// Version of the plan format.
 pub const PLAN_FORMAT: u32 = 1;
 
-/// The plan in the folder of a study.
+/// The file in the folder of a study that holds its plan.
 pub(super) const PLAN_FILE: &str = "study.json";
 
-/// Largest plan that is read, in bytes; a plan may hold many scenarios.
+/// Largest plan that is read, in bytes. A plan may hold many scenarios.
 pub const MAX_PLAN_BYTES: u64 = 1 << 24;
 
-/// A plan with its scenarios written out. `study.json` is one, and can be used as a plan
-/// file again.
+/// A plan with its scenarios written out. `study.json` holds one and can itself be used as a
+/// plan file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
-    /// Version of this format; 1.
+    /// Version of this format: 1.
     pub format: u32,
-    /// Short name, of the letters that scenario names are made of.
+    /// Short name, which follows the rules for names of scenarios.
     pub name: String,
-    /// What the study is for, in a sentence.
+    /// Purpose of the study, in one sentence.
     pub description: String,
-    /// The scenarios, each with a name of its own.
+    /// The scenarios, with different names.
     pub scenarios: Vec<Scenario>,
     /// The seeds.
     pub seeds: Numbers,
-    /// The arms, each with a name of its own.
+    /// The arms, with different names.
     pub arms: Vec<Arm>,
-    /// Name of the arm that every claim is held against, if there is one.
+    /// Name of the control arm, against which claims are tested.
     pub control: Option<String>,
-    /// How winners are evaluated anew.
+    /// How the winners of runs are evaluated.
     pub reevaluation: Reevaluation,
 }
 
-/// How the winner of a run is evaluated anew: fresh hierarchies of its structure, fresh
-/// trials, freshly trained sets of primitive subtasks, by seeds that no run uses and that
-/// all arms share.
+/// How the winner of a run is evaluated. Its structure is tested with new hierarchies, new
+/// trials and newly trained sets of primitive subtasks. The seeds are ones that no run uses, and
+/// they are the same in all arms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Reevaluation {
-    /// Trials of each repeat before scoring starts.
+    /// Trials of each repeat that come before the scored ones.
     #[schemars(range(min = 0, max = 10_000))]
     pub warmup: usize,
     /// Scored trials of each repeat.
     #[schemars(range(min = 1, max = 10_000))]
     pub trials: usize,
-    /// Fresh hierarchies.
+    /// Repeats, each with a new hierarchy.
     #[schemars(range(min = 2, max = 10_000))]
     pub repeats: usize,
-    /// Freshly trained sets of primitive subtasks that the repeats are spread over.
+    /// Newly trained sets of primitive subtasks, over which the repeats are spread.
+    #[serde(rename = "banks")]
     #[schemars(range(min = 1, max = 10_000))]
-    pub banks: usize,
+    pub primitive_sets: usize,
 }
 
 impl Default for Reevaluation {
-    /// Warm-up and scored trials as in a generation of the thesis; as many repeats as make
-    /// the standard error of one winner small against the spread between seeds.
+    /// Has as many warm-up and scored trials as a generation of the thesis, and enough repeats to
+    /// make the standard error of one winner small compared with the spread between seeds.
     fn default() -> Self {
         Self {
             warmup: 8,
             trials: 8,
             repeats: 32,
-            banks: 4,
+            primitive_sets: 4,
         }
     }
 }
 
 impl Plan {
-    /// Reads the plan by `name`: a file, or that of a study's folder, where there is one,
-    /// else an embedded plan.
+    /// Loads the plan `name`: the file of that name, or the plan of the study in the folder of
+    /// that name, or else the embedded plan of that name.
     ///
     /// # Errors
-    /// When there is none, or it is not a plan that can be carried out.
+    /// When there is none, or it cannot be carried out.
     pub fn load(name: &str) -> Result<Self, PlanError> {
         let embedded = EMBEDDED_PLANS.iter().find(|plan| plan.name == name);
         let path = match (file_of(name), embedded) {
             (Some(path), _) => path,
             (None, Some(plan)) => return Self::parse(plan.json, plan.name, Path::new("")),
-            // Not a regular file: a pipe can be read, a folder says why not.
+            // A pipe is not a regular file but can be read; reading a folder gives the error.
             (None, None) if Path::new(name).exists() => PathBuf::from(name),
             (None, None) => {
-                let names: Vec<_> = EMBEDDED_PLANS.iter().map(|plan| plan.name).collect();
                 return Err(PlanError::NotFound {
                     name: name.to_owned(),
-                    allowed: names.join(", "),
                 });
             }
         };
@@ -103,9 +103,9 @@ impl Plan {
         Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
     }
 
-    /// Whether `name` is that of a plan rather than of a scenario: an embedded plan, the
-    /// folder of a study, or a JSON file that has arms or scenarios, or speaks of them where
-    /// it is broken.
+    /// Returns whether `name` means a plan rather than a scenario: an embedded plan, the folder of
+    /// a study, or a JSON file with arms or scenarios. A file that is not JSON counts if it
+    /// mentions them.
     #[must_use]
     pub fn is_plan(name: &str) -> bool {
         let Some(path) = file_of(name) else {
@@ -115,7 +115,7 @@ impl Plan {
             return true;
         }
         let text = read_text(&path, MAX_PLAN_BYTES).unwrap_or_default();
-        // Either may be what is missing.
+        // A plan may lack either of them by mistake.
         let mut keys = ["arms", "scenarios"].into_iter();
         match serde_json::from_str::<Value>(&text) {
             Ok(json) => keys.any(|key| json.get(key).is_some()),
@@ -123,10 +123,11 @@ impl Plan {
         }
     }
 
-    /// Parses plan `text`; `file` names it in errors, scenario files are sought in `folder`.
+    /// Parses and checks the text of a plan. Errors name it `file`. Scenario files are looked for
+    /// in `folder` first.
     ///
     /// # Errors
-    /// When it is not a plan that can be carried out.
+    /// When the text is not a plan, or the plan cannot be carried out.
     pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, PlanError> {
         if let Some(found) = stated_format(text).filter(|&format| format != PLAN_FORMAT) {
             return Err(PlanError::Invalid {
@@ -140,14 +141,14 @@ impl Plan {
             .checked(file)
     }
 
-    /// The JSON Schema of plans.
+    /// Returns the JSON Schema of plan files.
     #[must_use]
     pub fn schema() -> schemars::Schema {
         schemars::schema_for!(PlanFile)
     }
 
-    /// A plan for scenarios given by name. The control is `random_selection` if it is
-    /// among the arms.
+    /// Creates a plan for scenarios given by name. The first arm with the base
+    /// `random_selection` is the control.
     ///
     /// # Errors
     /// When a scenario cannot be used, or the plan cannot be carried out.
@@ -161,18 +162,17 @@ impl Plan {
             })
         });
         let scenarios: Vec<_> = loaded.collect::<Result<_, _>>()?;
-        let names: Vec<_> = scenarios
-            .iter()
-            .map(|scenario| scenario.name.as_str())
-            .collect();
-        // Too many names make no name.
-        let name = names.join("_");
+        let names = scenarios.iter().map(|scenario| scenario.name.as_str());
+        let name = names.collect::<Vec<_>>().join("_");
         let control = arms.iter().find(|arm| arm.base == Base::RandomSelection);
         Self {
             format: PLAN_FORMAT,
-            name: Some(name)
-                .filter(|name| is_name(name))
-                .unwrap_or_else(|| String::from("study")),
+            // Many scenarios together are too long for a name.
+            name: if is_name(&name) {
+                name
+            } else {
+                String::from("study")
+            },
             description: String::new(),
             control: control.map(|arm| arm.name.clone()),
             scenarios,
@@ -183,7 +183,7 @@ impl Plan {
         .checked(file)
     }
 
-    /// The plan as a file: the bytes of `study.json`.
+    /// Returns the bytes of `study.json`.
     ///
     /// # Errors
     /// When serialisation fails.
@@ -193,7 +193,7 @@ impl Plan {
         Ok(bytes)
     }
 
-    /// This plan if it can be carried out.
+    /// Returns this plan if it can be carried out.
     fn checked(self, file: &str) -> Result<Self, PlanError> {
         let invalid = |place: &str, message: String| {
             Err(PlanError::Invalid {
@@ -206,37 +206,23 @@ impl Plan {
             return invalid("name", format!("found {:?}; allowed: {NAMES}", self.name));
         }
         if self.scenarios.is_empty() || self.arms.is_empty() {
-            return invalid(
-                "scenarios, arms",
-                String::from("found none; allowed: at least one"),
-            );
+            let message = String::from("found none; allowed: at least one");
+            return invalid("scenarios, arms", message);
         }
-        let names: BTreeSet<_> = self
-            .scenarios
-            .iter()
-            .map(|scenario| &scenario.name)
-            .collect();
+        let different = || String::from("found two with one name; allowed: different names");
+        let names: BTreeSet<_> = self.scenarios.iter().map(|s| &s.name).collect();
         if names.len() != self.scenarios.len() {
-            return invalid(
-                "scenarios",
-                String::from("found two with one name; allowed: different names"),
-            );
+            return invalid("scenarios", different());
         }
         let names: BTreeSet<_> = self.arms.iter().map(|arm| arm.name.as_str()).collect();
         if names.len() != self.arms.len() {
-            return invalid(
-                "arms",
-                String::from("found two with one name; allowed: different names"),
-            );
+            return invalid("arms", different());
         }
         if let Some(name) = names.iter().find(|name| !is_name(name)) {
             return invalid("arms", format!("found name {name:?}; allowed: {NAMES}"));
         }
-        if let Some(control) = self
-            .control
-            .as_deref()
-            .filter(|control| !names.contains(control))
-        {
+        let control = self.control.as_deref();
+        if let Some(control) = control.filter(|control| !names.contains(control)) {
             let allowed = names.into_iter().collect::<Vec<_>>().join(", ");
             return invalid("control", format!("found {control:?}; allowed: {allowed}"));
         }
@@ -259,13 +245,13 @@ impl Plan {
             warmup,
             trials,
             repeats,
-            banks,
+            primitive_sets,
         } = self.reevaluation;
         for (name, found, least) in [
             ("warmup", warmup, 0),
             ("trials", trials, 1),
             ("repeats", repeats, 2),
-            ("banks", banks, 1),
+            ("banks", primitive_sets, 1),
         ] {
             if !(least..=10_000).contains(&found) {
                 return Err(PlanError::Invalid {
@@ -279,14 +265,8 @@ impl Plan {
     }
 }
 
-const NAMES: &str = "1 to 64 of a-z, 0-9, '-', '_' and '.', not starting with '.' or '-'";
-
-fn is_name(name: &str) -> bool {
-    let letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
-    (1..=64).contains(&name.len()) && name.chars().all(letter) && !name.starts_with(['.', '-'])
-}
-
-/// The file that a name means, if there is one: itself, or the plan of a study's folder.
+/// Returns the plan file that `name` means, if it exists: the file of that name, or the plan of
+/// the study in the folder of that name.
 fn file_of(name: &str) -> Option<PathBuf> {
     let path = PathBuf::from(name);
     [path.join(PLAN_FILE), path]
@@ -294,60 +274,61 @@ fn file_of(name: &str) -> Option<PathBuf> {
         .find(|path| path.is_file())
 }
 
-/// A study: scenarios, arms and seeds, each scenario with each arm and seed a run.
+/// The plan of a study. Every combination of a scenario, an arm and a seed is a run.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "maxq-lab plan")]
 struct PlanFile {
-    /// Version of this format; 1.
+    /// Version of this format: 1.
     #[schemars(range(min = 1, max = 1))]
     format: u32,
-    /// Short name, of the letters that scenario names are made of.
+    /// Short name, which follows the rules for names of scenarios.
     #[schemars(regex(pattern = r"^[a-z0-9_][a-z0-9_.-]{0,63}$"))]
     name: String,
-    /// What the study is for, in a sentence.
+    /// Purpose of the study, in one sentence.
     #[serde(default)]
     description: String,
-    /// The scenarios, each with a name of its own.
+    /// The scenarios, with different names.
     #[schemars(with = "Vec<ScenarioEntry>", length(min = 1))]
     scenarios: Vec<Value>,
-    /// The seeds: numbers and ranges, both ends counted, separated by commas, such as `1..30`
-    /// or `1,2,5..9`.
+    /// The seeds: numbers and inclusive ranges, separated by commas, such as `1..30` or
+    /// `1,2,5..9`.
     #[schemars(
         with = "String",
         regex(pattern = r"^\s*\d+(\.\.=?\d+)?\s*(,\s*\d+(\.\.=?\d+)?\s*)*$")
     )]
     seeds: Numbers,
-    /// The arms, each with a name of its own.
+    /// The arms, with different names.
     #[schemars(with = "Vec<ArmEntry>", length(min = 1))]
     arms: Vec<Value>,
-    /// Name of the arm that every claim is held against, if there is one.
+    /// Name of the control arm, against which claims are tested.
     #[serde(default)]
     control: Option<String>,
-    /// How winners are evaluated anew.
+    /// How the winners of runs are evaluated.
     #[serde(default)]
     reevaluation: Reevaluation,
 }
 
-/// A scenario of a plan, for the schema; reading it by hand gives errors with places.
+/// A scenario of a plan, for the schema. It is parsed by hand, for errors that name the place.
 #[derive(JsonSchema)]
 #[serde(untagged)]
-#[expect(dead_code, reason = "describes what is read by hand")]
+#[expect(dead_code, reason = "describes what is parsed by hand")]
 enum ScenarioEntry {
-    /// The name of an embedded scenario, or a file, sought in the plan's folder first.
+    /// The name of an embedded scenario or of a file, which is looked for in the plan's folder
+    /// first.
     Name(String),
-    /// The scenario itself.
+    /// A whole scenario.
     Whole(Box<Scenario>),
 }
 
-/// An arm of a plan, for the schema; reading it by hand gives errors with places.
+/// An arm of a plan, for the schema. It is parsed by hand, for errors that name the place.
 #[derive(JsonSchema)]
 #[serde(untagged)]
-#[expect(dead_code, reason = "describes what is read by hand")]
+#[expect(dead_code, reason = "describes what is parsed by hand")]
 enum ArmEntry {
-    /// An arm that is nothing but its base.
+    /// The name of a base: an arm without settings of its own.
     Base(Base),
-    /// A base with settings.
+    /// A whole arm.
     Whole(Arm),
 }
 
@@ -357,8 +338,8 @@ impl PlanFile {
         Ok(parse_json(text).map_err(|error| FileError::new(file, error))?)
     }
 
-    /// The plan with its scenarios and arms written out; `file` names it in errors, scenario
-    /// files are sought in `folder`.
+    /// Returns the plan with its scenarios and arms written out. Errors name it `file`. Scenario
+    /// files are looked for in `folder` first.
     fn write_out(self, file: &str, folder: &Path) -> Result<Plan, PlanError> {
         let scenarios = self.scenarios.iter().enumerate().map(|(index, value)| {
             scenario(value, folder).map_err(|source| PlanError::Scenario {
@@ -392,9 +373,10 @@ fn scenario(value: &Value, folder: &Path) -> Result<Scenario, ScenarioError> {
     match value {
         Value::String(name) => {
             let beside = folder.join(name);
-            match beside.is_file() {
-                true => Scenario::read(&beside),
-                false => Scenario::load(name),
+            if beside.is_file() {
+                Scenario::read(&beside)
+            } else {
+                Scenario::load(name)
             }
         }
         whole => Scenario::parse(&whole.to_string(), "written in one line"),

@@ -1,31 +1,32 @@
-//! What can be wrong with a plan.
+//! Errors of plans.
 
 use thiserror::Error;
 
 use super::arm::ArmError;
 use crate::files::FileError;
-use crate::scenario::ScenarioError;
+use crate::scenario::{EMBEDDED_PLANS, ScenarioError, names};
 
 /// Why a plan cannot be used.
 #[derive(Debug, Error)]
 pub enum PlanError {
-    /// There is no such plan.
-    #[error("no plan {name:?}: there is no such file, and the built-in plans are {allowed}")]
+    /// Neither a file nor an built-in plan has this name.
+    #[error(
+        "no plan {name:?}: there is no such file, and the built-in plans are {}",
+        names(EMBEDDED_PLANS)
+    )]
     NotFound {
-        /// The name asked for.
+        /// The name that was given.
         name: String,
-        /// The names there are.
-        allowed: String,
     },
     /// The file cannot be read, or is not the JSON of a plan.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It says what cannot be.
+    /// A value of the plan is not allowed.
     #[error("{file}: at {place}: {message}")]
     Invalid {
         /// The file, or what the plan was made from.
         file: String,
-        /// Where in it.
+        /// The place in it.
         place: String,
         /// What was found and what is allowed.
         message: String,
@@ -35,9 +36,9 @@ pub enum PlanError {
     Scenario {
         /// The file, or what the plan was made from.
         file: String,
-        /// Which scenario, from 0.
+        /// Index of the scenario, from 0.
         index: usize,
-        /// Why.
+        /// The cause.
         source: Box<ScenarioError>,
     },
     /// An arm of the plan does not fit a scenario.
@@ -49,7 +50,7 @@ pub enum PlanError {
         arm: String,
         /// Name of the scenario.
         scenario: String,
-        /// Why.
+        /// The cause.
         source: Box<ArmError>,
     },
 }

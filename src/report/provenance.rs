@@ -1,4 +1,4 @@
-//! Where figures and tables come from: they carry it.
+//! Provenance: what a figure or table was made from. Each carries its own.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -10,28 +10,29 @@ use super::plan::Plan;
 use super::study::Study;
 use crate::scenario::{EMBEDDED_PLANS, Embedded};
 
-/// What a figure or table of a study was made from. It names no machine and no time, so
-/// that the same runs give the same bytes anywhere.
+/// What a figure or table of a study was made from.
+///
+/// It names no machine and no time, so the same runs give the same bytes anywhere.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Provenance {
     /// Name of the study.
     pub study: String,
     /// CRC-32 of its `study.json`.
     pub plan_crc32: String,
-    /// Runs that are done.
+    /// Number of finished runs.
     pub runs: usize,
-    /// Runs that the plan has.
+    /// Number of runs in the plan.
     pub of: usize,
-    /// The seeds of the plan.
+    /// Seeds of the plan.
     pub seeds: String,
     /// Versions and commits of the program that did the runs.
     pub versions: Vec<String>,
-    /// The commands that make it, in a folder of the study's name.
+    /// Commands that repeat the study, in a folder with the study's name.
     pub command: String,
 }
 
 impl Provenance {
-    /// Of these runs of a study.
+    /// Returns the provenance of these runs of a study.
     #[must_use]
     pub fn of(study: &Study, all: &[Facts]) -> Self {
         let plan = study.plan.to_file().unwrap_or_default();
@@ -47,7 +48,7 @@ impl Provenance {
         }
     }
 
-    /// In one line, for people.
+    /// Returns the provenance as one line for people.
     #[must_use]
     pub fn line(&self) -> String {
         let Self {
@@ -69,16 +70,14 @@ impl Provenance {
     }
 }
 
-/// The commands that do a study anew and report it. They name no folder that somebody has
-/// chosen, for the same runs give the same bytes anywhere.
+/// Returns the commands that repeat a study and report it. The user's own folder names do not
+/// appear in them, because the same runs must give the same bytes anywhere.
 fn commands(plan: &Plan) -> String {
     let name = &plan.name;
     let embedded = EMBEDDED_PLANS.iter().find(|embedded| embedded.name == name);
     let parse = |embedded: &Embedded| Plan::parse(embedded.json, name, Path::new("")).ok();
     let embedded = embedded.and_then(parse);
-    let file = match embedded.is_some_and(|embedded| embedded == *plan) {
-        true => name.as_str(),
-        false => "study.json",
-    };
+    let is_embedded = embedded.is_some_and(|embedded| embedded == *plan);
+    let file = if is_embedded { name } else { "study.json" };
     format!("maxq-lab study {file} --out {name}; maxq-lab study report {name}")
 }

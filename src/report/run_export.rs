@@ -30,10 +30,8 @@ pub fn individuals(run: &RunSource) -> Table {
         "primitives",
         "structural_difference_to_best",
         "tree",
-        "version",
-        "command",
     ]);
-    let command = run.command("--format csv");
+    table.provenance = run.provenance("--format csv");
     for record in &run.records {
         for individual in &record.individuals {
             let delivered = individual
@@ -57,8 +55,6 @@ pub fn individuals(run: &RunSource) -> Table {
                 individual.primitives.len().to_string(),
                 individual.difference_to_best.to_string(),
                 individual.tree.clone(),
-                run.version.clone(),
-                command.clone(),
             ]);
         }
     }

@@ -1,5 +1,5 @@
-//! Many runs side by side, each on one thread: that keeps every processor busy without
-//! any of them waiting for another.
+//! Does runs of a study in parallel. Each run uses one thread, so that no thread waits for
+//! another.
 
 use std::collections::VecDeque;
 use std::num::NonZeroUsize;
@@ -12,40 +12,41 @@ use super::single::{Fresh, Single, SingleError};
 use super::study::{RunId, Study};
 use crate::lab::Keep;
 
-/// What happens to the runs of a study.
+/// An event in the work on the runs of a study.
 #[derive(Debug)]
 pub enum StudyEvent {
-    /// A run is begun, or gone on with.
+    /// A run was started or resumed.
     Started(RunId),
-    /// A run has come to its end, now or before.
+    /// A run is done; it may have been done before.
     Done {
         /// The run.
         run: RunId,
-        /// How good its winner is.
+        /// The evaluation of its winner.
         fresh: Box<Fresh>,
-        /// How long this took.
+        /// The time that the work took.
         took: Duration,
     },
-    /// Another process does the run.
+    /// Another process is working on the run.
     Elsewhere(RunId),
-    /// A run cannot be done.
+    /// A run failed.
     Failed {
         /// The run.
         run: RunId,
-        /// Why.
+        /// The cause.
         error: SingleError,
     },
 }
 
-/// Does `runs`, `jobs` at a time, until all are done, have failed, or were stopped.
-/// `tell` is told what happens; it is called from the threads that do the runs.
+/// Does `runs`, `jobs` at a time, until each of them is done, has failed or was stopped.
+///
+/// `report` receives every event. It is called from the threads that do the runs.
 pub fn run_study(
     study: &Study,
     runs: &[RunId],
     jobs: NonZeroUsize,
     keep: Keep,
     controls: &StudyControls,
-    tell: impl Fn(StudyEvent) + Sync,
+    report: impl Fn(StudyEvent) + Sync,
 ) {
     let waiting: Mutex<VecDeque<RunId>> = Mutex::new(runs.iter().copied().collect());
     let next = || {
@@ -54,8 +55,8 @@ pub fn run_study(
     };
     let work = || {
         while let Some(run) = next() {
-            tell(StudyEvent::Started(run));
-            let begun = Instant::now();
+            report(StudyEvent::Started(run));
+            let started = Instant::now();
             let single = Single {
                 study,
                 run,
@@ -63,14 +64,14 @@ pub fn run_study(
                 controls,
             };
             match single.carry_out() {
-                Ok(fresh) => tell(StudyEvent::Done {
+                Ok(fresh) => report(StudyEvent::Done {
                     run,
                     fresh: Box::new(fresh),
-                    took: begun.elapsed(),
+                    took: started.elapsed(),
                 }),
                 Err(SingleError::Stopped(_)) => {}
-                Err(error) if single.is_elsewhere(&error) => tell(StudyEvent::Elsewhere(run)),
-                Err(error) => tell(StudyEvent::Failed { run, error }),
+                Err(error) if single.is_elsewhere(&error) => report(StudyEvent::Elsewhere(run)),
+                Err(error) => report(StudyEvent::Failed { run, error }),
             }
         }
     };

@@ -200,7 +200,7 @@ impl Single<'_> {
             warmup: plan.warmup,
             trials: plan.trials,
             repeats: plan.repeats,
-            banks: plan.banks,
+            banks: plan.primitive_sets,
         };
         let seed = fresh_seed(&self.run);
         let experiment = experiment(scenario, seed)?;
@@ -272,7 +272,11 @@ pub(super) fn check_evaluation(
         ("warmup", fresh.warmup, plan.warmup),
         ("repeats", repeats.len(), plan.repeats),
         ("trials", trials.max().unwrap_or(0), plan.trials),
-        ("banks", banks.unwrap_or(0), plan.banks.min(plan.repeats)),
+        (
+            "banks",
+            banks.unwrap_or(0),
+            plan.primitive_sets.min(plan.repeats),
+        ),
     ];
     let other = numbers
         .into_iter()

@@ -1,4 +1,4 @@
-//! How far the runs of a study are, read from their folders at any time.
+//! The states of a study's runs, read from their folders at any time.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -10,26 +10,26 @@ use super::study::{RunId, Study};
 use crate::files::Stamp;
 use crate::lab::{Event, Follower, Life, News, Recording, RunError};
 
-/// How far a run is.
+/// The state of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunState {
-    /// Its winner has been evaluated.
+    /// It is done: its winner has been evaluated.
     Done,
-    /// Evolution is over, its winner is being evaluated or waits for that.
+    /// Evolution has ended; its winner has not been evaluated yet.
     Evolved,
-    /// A process works on it.
+    /// A process is working on it.
     Running,
-    /// It was begun and nobody works on it.
+    /// It was started, and no process is working on it.
     Interrupted,
-    /// It has not begun.
+    /// It has not been started.
     Waiting,
     /// Its folder cannot be read.
     Unreadable,
 }
 
 impl RunState {
-    /// All of them, in the order in which they are listed.
+    /// All states, in the order in which they are listed.
     pub const ALL: [Self; 6] = [
         Self::Done,
         Self::Evolved,
@@ -39,7 +39,7 @@ impl RunState {
         Self::Unreadable,
     ];
 
-    /// In a word, for people.
+    /// Returns the state in one word.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -53,7 +53,7 @@ impl RunState {
     }
 }
 
-/// How far one run is.
+/// The state and the results of one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunStatus {
     /// The run.
@@ -61,42 +61,42 @@ pub struct RunStatus {
     pub run: RunId,
     /// Its number in the study, from 1.
     pub number: usize,
-    /// Its name: the folder in the study's.
+    /// Its name: its folder relative to that of the study.
     pub name: String,
     /// Its folder.
     pub folder: PathBuf,
-    /// How far it is.
+    /// Its state.
     pub stage: RunState,
-    /// Generations lived.
+    /// Finished generations.
     pub generations: u64,
-    /// Whether evolution converged; `false` too while it is not over.
+    /// Whether evolution has converged.
     pub converged: bool,
-    /// Mean time steps of a scored trial of the best individual, generation by generation,
-    /// while it runs; of the last generation alone when it is over.
+    /// Mean time steps of a scored trial of the best individual, for each generation. When
+    /// evolution has ended, for the last generation only.
     pub best_steps: Vec<f64>,
-    /// Mean time steps of a trial of its winner's structure, evaluated anew.
+    /// Mean time steps of a trial in the evaluation of its winner.
     pub fresh_steps: Option<f64>,
-    /// Why it is unreadable.
+    /// The cause if it is unreadable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trouble: Option<String>,
 }
 
-/// How far every run of a study is. Nothing is locked or written; a study of hundreds of
-/// runs takes a fraction of a second.
+/// Returns the status of every run of a study.
+///
+/// It locks and writes nothing, and takes a fraction of a second for hundreds of runs.
 #[must_use]
 pub fn status(study: &Study) -> Vec<RunStatus> {
     StatusWatch::of(study).look()
 }
 
-/// Looks at the runs of a study again and again, and reads only what has changed since the
-/// last look.
+/// Follows the runs of a study. Each look reads only what has changed since the last one.
 #[derive(Debug)]
 pub struct StatusWatch {
     runs: Vec<Watched>,
 }
 
 impl StatusWatch {
-    /// Of the runs of a study, which need not have begun.
+    /// Creates a watch of all runs of a study, including those that have not been started.
     #[must_use]
     pub fn of(study: &Study) -> Self {
         let runs = study.runs().into_iter();
@@ -105,7 +105,7 @@ impl StatusWatch {
         }
     }
 
-    /// How far every run is now, in the order of the study.
+    /// Returns the status of every run now, in the order of the study.
     #[must_use]
     pub fn look(&mut self) -> Vec<RunStatus> {
         let now = Instant::now();
@@ -129,15 +129,15 @@ fn waiting(study: &Study, run: RunId) -> RunStatus {
     }
 }
 
-/// A run that is looked at.
+/// A run that is followed.
 #[derive(Debug)]
 struct Watched {
-    /// What is known of it without its folder.
+    /// Its status as long as it has no folder.
     waiting: RunStatus,
     status: RunStatus,
-    /// The files that tell its results, once it is over, as they were read.
+    /// The versions of its result files that were read last.
     results: [Option<Stamp>; 2],
-    /// While it is not.
+    /// Follows its log until evolution has ended.
     follower: Option<Followed>,
 }
 
@@ -160,12 +160,11 @@ impl Watched {
         }
         self.results = results;
         let mut status = self.waiting.clone();
-        let looked = match is_over {
-            true => {
-                self.follower = None;
-                read_results(&mut status).map_err(|error| error.to_string())
-            }
-            false => self.follow(&mut status, now),
+        let looked = if is_over {
+            self.follower = None;
+            read_results(&mut status).map_err(|error| error.to_string())
+        } else {
+            self.follow(&mut status, now)
         };
         if let Err(trouble) = looked {
             status.stage = RunState::Unreadable;
@@ -195,23 +194,20 @@ impl Watched {
     }
 }
 
-/// Reads how a run ended that is over.
+/// Reads the results of a run whose evolution has ended.
 fn read_results(status: &mut RunStatus) -> Result<(), SingleError> {
     if let Some(outcome) = summary(&status.folder)? {
         status.generations = outcome.generations;
         status.converged = outcome.converged;
         status.best_steps = outcome.best.iter().map(|best| best.fitness).collect();
         let fresh = fresh(&status.folder)?;
-        status.stage = match &fresh {
-            Some(_) => RunState::Done,
-            None => RunState::Evolved,
-        };
+        status.stage = fresh.as_ref().map_or(RunState::Evolved, |_| RunState::Done);
         status.fresh_steps = fresh.map(|fresh| fresh.evaluation.mean);
     }
     Ok(())
 }
 
-/// A run that is followed from generation to generation.
+/// The generations of a run whose log is followed.
 #[derive(Debug)]
 struct Followed {
     follower: Follower,
@@ -248,8 +244,8 @@ impl Followed {
     }
 }
 
-/// Mean time steps of a scored trial of the best individual of the run in a folder,
-/// generation by generation so far.
+/// Returns, for each finished generation of the run in a folder, the mean time steps of a scored
+/// trial of the best individual.
 ///
 /// # Errors
 /// When the folder holds no run, or its log cannot be read.

@@ -1,4 +1,4 @@
-//! The folder of a study, and the runs that it has.
+//! A study: its plan, its folder and its runs.
 
 use std::fs;
 use std::io;
@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::arm::Arm;
-use super::plan::{PLAN_FILE, Plan};
+use super::numbers::Numbers;
+use super::plan::{MAX_PLAN_BYTES, PLAN_FILE, Plan};
 use super::plan_error::PlanError;
 use crate::files::{FileError, read_text, write_atomically};
 use crate::scenario::Scenario;
@@ -18,8 +19,8 @@ use crate::scenario::Scenario;
 /// DIR/
 ///   study.json                            the plan, scenarios and arms written out
 ///   SCENARIO/ARM/seed-N/                  a run folder
-///   SCENARIO/ARM/seed-N/evaluation.json   its winner, evaluated anew
-///   report/                               what 'study report' writes
+///   SCENARIO/ARM/seed-N/evaluation.json   the evaluation of its winner
+///   report/                               the output of `study report`
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
@@ -29,7 +30,7 @@ pub struct Study {
     pub folder: PathBuf,
 }
 
-/// One run of a study.
+/// Identifies a run of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RunId {
     /// Its number in the study, from 1.
@@ -45,7 +46,7 @@ pub struct RunId {
 /// Why a study cannot be used.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// Its plan cannot be used.
+    /// The plan cannot be used.
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// The folder has no `study.json`.
@@ -54,7 +55,7 @@ pub enum StudyError {
         /// The folder.
         path: String,
     },
-    /// The folder holds another study.
+    /// The folder holds the study of another plan.
     #[error(
         "{path}: holds the study of another plan; allowed: another folder, or the plan that \
          {path}/study.json says"
@@ -66,18 +67,18 @@ pub enum StudyError {
     /// The study has no such run.
     #[error("--only: found {found:?}; allowed: {allowed}")]
     NoSuchRun {
-        /// What was asked for.
+        /// The name that was given.
         found: String,
-        /// What there is.
+        /// The names that exist.
         allowed: String,
     },
-    /// The operating system refused.
+    /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
 }
 
 impl Study {
-    /// The study of a plan in a folder, which is made if it is not there.
+    /// Opens the study of a plan in a folder. Creates both if the folder holds no study.
     ///
     /// # Errors
     /// When the folder holds the study of another plan, or the operating system refuses.
@@ -86,12 +87,12 @@ impl Study {
         let refused = |error: io::Error| FileError::new(&file, error);
         if file.exists() {
             let study = Self::open(folder)?;
-            return match study.plan == plan {
-                true => Ok(study),
-                false => Err(StudyError::Another {
+            if study.plan != plan {
+                return Err(StudyError::Another {
                     path: folder.display().to_string(),
-                }),
-            };
+                });
+            }
+            return Ok(study);
         }
         fs::create_dir_all(folder).map_err(refused)?;
         let text = plan.to_file().map_err(|error| refused(error.into()))?;
@@ -102,16 +103,16 @@ impl Study {
         })
     }
 
-    /// Whether a folder is that of a study.
+    /// Returns whether a folder holds a study.
     #[must_use]
     pub fn is_in(folder: &Path) -> bool {
         folder.join(PLAN_FILE).is_file()
     }
 
-    /// The study in a folder.
+    /// Opens the study in a folder.
     ///
     /// # Errors
-    /// When the folder holds none, or its `study.json` is not a plan.
+    /// When the folder holds no study, or its `study.json` is not a plan.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
         let file = folder.join(PLAN_FILE);
         if !Self::is_in(folder) {
@@ -120,16 +121,18 @@ impl Study {
             });
         }
         let name = file.display().to_string();
-        let text = read_text(&file, super::plan::MAX_PLAN_BYTES)?;
+        let text = read_text(&file, MAX_PLAN_BYTES)?;
         Ok(Self {
             plan: Plan::parse(&text, &name, folder)?,
             folder: folder.to_owned(),
         })
     }
 
-    /// All runs in the order in which they are done: seed by seed, so that a study that is
-    /// broken off has about as many of every kind; arm by arm, so that the arms which
-    /// need the length of an evolved run find it if that arm comes first.
+    /// Returns all runs in the order in which they are done.
+    ///
+    /// Seeds vary slowest, so that an interrupted study has about as many runs of every scenario
+    /// and arm. Scenarios vary fastest, so that an arm with a matched budget finds the evolved run
+    /// done if the evolved arm comes first in the plan.
     #[must_use]
     pub fn runs(&self) -> Vec<RunId> {
         let plan = &self.plan;
@@ -149,62 +152,53 @@ impl Study {
         runs
     }
 
-    /// The runs named: by number, by range of numbers, or by `SCENARIO/ARM/seed-N`.
+    /// Returns the runs with a name: a number, a list of numbers and ranges, or
+    /// `SCENARIO/ARM/seed-N`.
     ///
     /// # Errors
-    /// When there is no such run.
+    /// When the study has no such run.
     pub fn find(&self, name: &str) -> Result<Vec<RunId>, StudyError> {
         let runs = self.runs();
         let last = runs.len();
-        let numbers: Option<super::numbers::Numbers> = name.parse().ok();
-        let found: Vec<_> = match &numbers {
-            Some(numbers) => {
-                let beyond = numbers.iter().find(|&n| n == 0 || n > last as u64);
-                let within = runs
-                    .into_iter()
-                    .filter(|run| numbers.contains(run.number as u64));
-                if beyond.is_some() {
-                    Vec::new()
-                } else {
-                    within.collect()
-                }
-            }
-            None => runs
-                .into_iter()
-                .filter(|run| self.name(run) == name)
-                .collect(),
+        let numbers: Option<Numbers> = name.parse().ok();
+        let exists = |number| (1..=last as u64).contains(&number);
+        let all_exist = numbers
+            .as_ref()
+            .is_none_or(|numbers| numbers.iter().all(exists));
+        let is_named = |run: &RunId| match &numbers {
+            Some(numbers) => all_exist && numbers.contains(run.number as u64),
+            None => self.name(run) == name,
         };
-        match found.is_empty() {
-            false => Ok(found),
-            true => Err(StudyError::NoSuchRun {
+        let found: Vec<_> = runs.into_iter().filter(is_named).collect();
+        if found.is_empty() {
+            return Err(StudyError::NoSuchRun {
                 found: name.to_owned(),
-                allowed: format!(
-                    "1 to {last}, or SCENARIO/ARM/seed-N as 'study commands' lists them"
-                ),
-            }),
+                allowed: format!("1 to {last}, or SCENARIO/ARM/seed-N as 'study commands' lists them"),
+            });
         }
+        Ok(found)
     }
 
-    /// The name of a run: its folder in the study's.
+    /// Returns the name of a run: its folder relative to that of the study.
     #[must_use]
     pub fn name(&self, run: &RunId) -> String {
         let (scenario, arm) = (&self.scenario(run).name, &self.arm(run).name);
         format!("{scenario}/{arm}/seed-{}", run.seed)
     }
 
-    /// The folder of a run.
+    /// Returns the folder of a run.
     #[must_use]
     pub fn run_folder(&self, run: &RunId) -> PathBuf {
         self.folder.join(self.name(run))
     }
 
-    /// The scenario of a run, before its arm is applied.
+    /// Returns the scenario of a run, without the changes of its arm.
     #[must_use]
     pub fn scenario(&self, run: &RunId) -> &Scenario {
         &self.plan.scenarios[run.scenario]
     }
 
-    /// The arm of a run.
+    /// Returns the arm of a run.
     #[must_use]
     pub fn arm(&self, run: &RunId) -> &Arm {
         &self.plan.arms[run.arm]

@@ -7,8 +7,8 @@ use super::findings::Findings;
 use super::provenance::Provenance;
 use super::run_export::tree_dot;
 use super::study::Study;
+use super::study_tables::runs_table;
 use super::table::Table;
-use super::tables::runs_table;
 use crate::lab::SetupError;
 
 /// One row a run.
@@ -39,7 +39,7 @@ pub fn markdown(study: &Study, all: &[Facts]) -> String {
 pub fn dot(study: &Study, all: &[Facts]) -> Result<String, SetupError> {
     let findings = Findings::from_facts(study, all);
     let mut text = format!("// {}\n", findings.provenance.line());
-    for kind in &findings.kinds {
+    for kind in &findings.groups {
         let arm = study.plan.arms.iter().find(|arm| arm.name == kind.arm);
         let scenario = study
             .plan

@@ -1,4 +1,4 @@
-//! Tables, as Markdown and as CSV.
+//! Tables of text, as Markdown and as CSV.
 
 /// A table of text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -7,19 +7,21 @@ pub struct Table {
     pub header: Vec<String>,
     /// The rows, each as long as the header.
     pub rows: Vec<Vec<String>>,
+    /// What the table was made from, in one line; empty if it does not say.
+    pub provenance: String,
 }
 
 impl Table {
-    /// A table without rows.
+    /// Creates a table without rows.
     #[must_use]
     pub fn new(header: &[&str]) -> Self {
         Self {
             header: header.iter().map(|&name| name.to_owned()).collect(),
-            rows: Vec::new(),
+            ..Self::default()
         }
     }
 
-    /// As Markdown.
+    /// Returns the table as Markdown, followed by its provenance.
     #[must_use]
     pub fn markdown(&self) -> String {
         let line = |cells: &[String]| {
@@ -28,23 +30,36 @@ impl Table {
         };
         let rule = format!("|{}\n", " --- |".repeat(self.header.len()));
         let rows = self.rows.iter().map(|row| line(row));
-        line(&self.header) + &rule + &rows.collect::<String>()
+        let table = line(&self.header) + &rule + &rows.collect::<String>();
+        match self.provenance.as_str() {
+            "" => table,
+            provenance => format!("{table}\n{provenance}.\n"),
+        }
     }
 
-    /// As CSV (RFC 4180): one header, fields quoted where they need it.
+    /// Returns the table as CSV (RFC 4180): a `#` line with the provenance, a header, the rows.
+    ///
+    /// `pandas.read_csv(file, comment="#")` and R's `read.csv(file, comment.char = "#")` read it.
     #[must_use]
     pub fn csv(&self) -> String {
-        let field = |cell: &String| match cell.contains([',', '"', '\n', '\r']) {
-            true => format!("\"{}\"", cell.replace('"', "\"\"")),
-            false => cell.clone(),
+        let field = |cell: &String| {
+            if cell.contains([',', '"', '#', '\n', '\r']) {
+                format!("\"{}\"", cell.replace('"', "\"\""))
+            } else {
+                cell.clone()
+            }
         };
         let line =
             |cells: &Vec<String>| cells.iter().map(field).collect::<Vec<_>>().join(",") + "\n";
-        line(&self.header) + &self.rows.iter().map(line).collect::<String>()
+        let provenance = match self.provenance.as_str() {
+            "" => String::new(),
+            provenance => format!("# {}\n", provenance.replace(['\n', '\r'], " ")),
+        };
+        provenance + &line(&self.header) + &self.rows.iter().map(line).collect::<String>()
     }
 }
 
-/// A number for people: three significant digits, or whole.
+/// Formats a number for people: three significant digits, or an integer.
 #[must_use]
 pub fn short(value: f64) -> String {
     match value.abs() {
@@ -55,7 +70,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A probability for people.
+/// Formats a p-value for people.
 #[must_use]
 pub fn p_value(p: f64) -> String {
     match p {
@@ -70,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fields_that_need_it_are_quoted() {
+    fn fields_are_quoted_where_needed_and_provenance_comes_first() {
         let mut table = Table::new(&["tree", "n"]);
         table
             .rows
@@ -80,6 +95,8 @@ mod tests {
             table.markdown(),
             "| tree | n |\n| --- | --- |\n| a, \"b\" | 1 |\n"
         );
+        table.provenance = String::from("made by\nhand");
+        assert!(table.csv().starts_with("# made by hand\ntree,n\n"));
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! What the thesis looks at in a hierarchy.
+//! The properties of final structures that the claims of the thesis are about.
 
 use super::facts::Winner;
 
-/// Composite subtasks of the foraging task by the side that they serve: capturing,
+/// Composite subtasks of the foraging task that serve capturing, and those that serve
 /// delivering.
 const SIDES: [[&str; 3]; 2] = [
     ["Capture", "FindBattery", "VisibleBattery"],
@@ -10,22 +10,22 @@ const SIDES: [[&str; 3]; 2] = [
 ];
 
 impl Winner {
-    /// Whether every state type has one selectable primitive subtask: the *minimal
-    /// strategy* of S. Elfwing et al., *Evolutionary Development of Hierarchical Learning
-    /// Structures*, IEEE Transactions on Evolutionary Computation 11 (2007).
+    /// Returns whether every state type has exactly one selectable primitive subtask: the
+    /// *minimal strategy* of S. Elfwing et al., *Evolutionary Development of Hierarchical
+    /// Learning Structures*, IEEE Transactions on Evolutionary Computation 11 (2007).
     #[must_use]
     pub fn is_minimal(&self) -> bool {
         self.selectable.iter().all(|names| names.len() == 1)
     }
 
-    /// Selectable primitive subtasks, summed over the state types.
+    /// Returns the number of selectable primitive subtasks, summed over state types.
     #[must_use]
     pub fn selectable_in_all(&self) -> usize {
         self.selectable.iter().map(Vec::len).sum()
     }
 
-    /// Composite and selectable primitive subtasks of the capture and of the deliver side;
-    /// none where the task is not foraging.
+    /// Returns the number of composite and selectable primitive subtasks of the capture side and
+    /// of the deliver side; `None` if the task is not foraging.
     #[must_use]
     pub fn sides(&self) -> Option<[usize; 2]> {
         let [first, second, third, fourth] = self.selectable.as_slice() else {
@@ -33,22 +33,17 @@ impl Winner {
         };
         let captures = self.primitives.iter().any(|name| name == "ApproachBattery");
         let composites = |side: [&str; 3]| {
-            self.composites
-                .iter()
-                .filter(|name| side.contains(&name.as_str()))
-                .count()
+            let own = self.composites.iter().map(String::as_str);
+            own.filter(|name| side.contains(name)).count()
         };
         let [capture, deliver] = SIDES.map(composites);
-        captures.then(|| {
-            [
-                capture + first.len() + second.len(),
-                deliver + third.len() + fourth.len(),
-            ]
-        })
+        let capture = capture + first.len() + second.len();
+        let deliver = deliver + third.len() + fourth.len();
+        captures.then_some([capture, deliver])
     }
 
-    /// Whether the deliver side has all its composite subtasks and at least four primitive
-    /// ones; none where the task is not foraging.
+    /// Returns whether the deliver side has all of its composite subtasks and at least four
+    /// primitive ones; `None` if the task is not foraging.
     #[must_use]
     pub fn deliver_is_complete(&self) -> Option<bool> {
         self.sides()?;

@@ -1,4 +1,4 @@
-//! The report of a study as files.
+//! Writes the report of a study to files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use super::figures::{FigureError, FigureNumber, SourceError, study_figure};
 use super::findings::Findings;
 use super::single::SingleError;
 use super::study::{Study, StudyError};
-use super::tables::{
+use super::study_tables::{
     claims_table, comparisons_table, generations_table, metrics_table, runs_table,
 };
 use crate::files::{FileError, write_atomically};
@@ -17,15 +17,15 @@ use crate::files::{FileError, write_atomically};
 /// A report that was written.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// What it says.
+    /// Its findings.
     pub findings: Findings,
-    /// Its text, Markdown.
+    /// Its text, as Markdown.
     pub text: String,
     /// Its files.
     pub files: Vec<PathBuf>,
 }
 
-/// Why a report could not be written.
+/// Why a report cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// A run cannot be read.
@@ -42,10 +42,10 @@ pub enum ReportError {
     Figure(#[from] FigureError),
 }
 
-/// The facts of all runs that are done.
+/// Reads the facts of all finished runs, in the order of the study.
 ///
 /// # Errors
-/// When a folder holds another run, or a file that cannot be read.
+/// When a folder holds another run, or a file cannot be read.
 pub fn read_facts(study: &Study) -> Result<Vec<Facts>, SingleError> {
     let mut all = Vec::new();
     for run in study.runs() {
@@ -54,9 +54,8 @@ pub fn read_facts(study: &Study) -> Result<Vec<Facts>, SingleError> {
     Ok(all)
 }
 
-/// Writes the report of the runs that are done to `report/` in the study's folder:
-/// `report.md`, `report.json`, tables as CSV, figures as SVG. The same runs give the same
-/// bytes.
+/// Writes the report of the finished runs to `report/` in the study's folder: `report.md`,
+/// `report.json`, tables as CSV, and figures as SVG and CSV. The same runs give the same bytes.
 ///
 /// # Errors
 /// When a run cannot be read, or a file cannot be written.
@@ -68,32 +67,30 @@ pub fn write_report(study: &Study) -> Result<Written, ReportError> {
     json.push(b'\n');
     let tables = [
         ("runs.csv", runs_table(study, &all, &findings.provenance)),
-        ("generations.csv", generations_table(study, &all)),
+        (
+            "generations.csv",
+            generations_table(study, &all, &findings.provenance),
+        ),
         ("metrics.csv", metrics_table(&findings)),
         ("comparisons.csv", comparisons_table(&findings)),
         ("claims.csv", claims_table(&findings)),
     ];
     let mut contents = vec![
-        ("report.md", text.clone().into_bytes()),
-        ("report.json", json),
+        (String::from("report.md"), text.clone().into_bytes()),
+        (String::from("report.json"), json),
     ];
-    contents.extend(tables.map(|(name, table)| (name, table.csv().into_bytes())));
-    let mut contents: Vec<_> = contents
-        .into_iter()
-        .map(|(name, bytes)| (name.to_owned(), bytes))
-        .collect();
+    contents.extend(tables.map(|(name, table)| (name.to_owned(), table.csv().into_bytes())));
     for number in FigureNumber::ALL.into_iter().filter(|_| !all.is_empty()) {
         let figure = study_figure(study, &all, number)?;
         if figure.panels.is_empty() {
-            // Not every world has primitive subtasks that look at a single reading.
+            // Figure 4.3 needs primitive subtasks that read a single sensor, which not every world
+            // has.
             continue;
         }
         let name = number.name();
         contents.push((format!("figure-{name}.svg"), figure.svg()?.into_bytes()));
-        contents.push((
-            format!("figure-{name}.csv"),
-            figure.table().csv().into_bytes(),
-        ));
+        let csv = figure.table().csv().into_bytes();
+        contents.push((format!("figure-{name}.csv"), csv));
     }
     let folder = study.folder.join("report");
     let files = contents

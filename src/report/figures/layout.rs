@@ -1,43 +1,42 @@
-//! Hierarchies laid out to be drawn.
+//! The layout of hierarchies in figures.
 
 use serde::Serialize;
 
 use crate::hierarchy::{Glyphs, Tree, draw, to_text};
 use crate::worlds::Catalogue;
 
-/// A hierarchy ready to be drawn.
+/// A hierarchy with its layout.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sketch {
-    /// What it is.
+    /// Its caption.
     pub caption: String,
-    /// Its text.
+    /// The hierarchy as text.
     pub text: String,
     /// Its nodes in preorder.
     #[serde(skip)]
     pub nodes: Vec<SketchNode>,
-    /// Drawn in lines, in box-drawing characters and in ASCII.
+    /// The hierarchy drawn with box-drawing characters, and drawn in ASCII.
     #[serde(skip)]
     pub lines: [Vec<String>; 2],
 }
 
-/// A node of a sketch.
+/// A node of a hierarchy with its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SketchNode {
-    /// The subtask.
+    /// Name of the subtask.
     pub name: String,
     /// Whether it is composite.
     pub composite: bool,
-    /// Its place from left to right, in leaves.
+    /// Its horizontal position, in widths of a leaf.
     pub column: f64,
-    /// Its level, the root at 0.
+    /// Its level. The root is at 0.
     pub row: usize,
-    /// Index of its parent.
+    /// Index of its parent; `None` for the root.
     pub parent: Option<usize>,
 }
 
 impl Sketch {
-    /// Lays out a hierarchy: leaves side by side, parents above the middle of their
-    /// children.
+    /// Lays out a hierarchy: leaves side by side, and parents centred above their children.
     #[must_use]
     pub fn of(caption: String, tree: &Tree, catalogue: &Catalogue) -> Self {
         let mut nodes: Vec<SketchNode> = tree
@@ -75,7 +74,7 @@ impl Sketch {
         }
     }
 
-    /// Number of leaves.
+    /// Returns the width in leaves.
     #[must_use]
     pub fn columns(&self) -> f64 {
         self.nodes
@@ -84,7 +83,7 @@ impl Sketch {
             .fold(1.0, f64::max)
     }
 
-    /// Number of levels.
+    /// Returns the number of levels.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.nodes

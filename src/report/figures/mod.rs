@@ -1,4 +1,4 @@
-//! The thesis's figures: what is in them, and how they are drawn, as SVG and as text.
+//! The figures of the thesis, made from runs or studies and drawn as SVG or as text.
 
 mod layout;
 mod primitives;
@@ -15,25 +15,25 @@ pub use layout::{Sketch, SketchNode};
 pub use run::{RunSource, SourceError};
 pub use study::study_figure;
 
-/// The figures that there are.
+/// The figures of the thesis that can be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FigureNumber {
-    /// Action values of the primitive subtasks over the angle to their target.
+    /// Action values of the primitive subtasks against the angle to their target.
     F4_3,
-    /// Hierarchies obtained.
+    /// The hierarchies obtained.
     F4_5,
-    /// Structural difference to the best, generation by generation.
+    /// Structural difference to the best hierarchy in each generation.
     F4_7,
-    /// Fitness of the better half, generation by generation.
+    /// Fitness of the better half of the population in each generation.
     F4_8,
     /// The best hierarchy of selected generations.
     F4_9,
-    /// Selection probabilities, generation by generation.
+    /// Selection probabilities in each generation.
     F4_10,
 }
 
 impl FigureNumber {
-    /// All of them.
+    /// All figures.
     pub const ALL: [Self; 6] = [
         Self::F4_3,
         Self::F4_5,
@@ -43,7 +43,7 @@ impl FigureNumber {
         Self::F4_10,
     ];
 
-    /// As the thesis numbers it.
+    /// Returns its number in the thesis.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -67,60 +67,60 @@ impl std::str::FromStr for FigureNumber {
     }
 }
 
-/// A figure: what it shows, whatever it is drawn with.
+/// The content of a figure, independent of how it is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
     /// Its number in the thesis.
     pub number: &'static str,
-    /// What it shows.
+    /// Its title.
     pub title: String,
-    /// Runs, seeds, version and command that made it.
+    /// The runs, seeds, versions and commands that it was made from.
     pub provenance: String,
     /// Its panels.
     pub panels: Vec<Panel>,
 }
 
-/// A part of a figure.
+/// A panel of a figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Panel {
-    /// Lines.
+    /// A line chart.
     Chart(Chart),
     /// A hierarchy.
     Tree(Sketch),
 }
 
-/// Lines over a common axis.
+/// A line chart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chart {
-    /// What it shows.
+    /// Its title.
     pub title: String,
-    /// What is on the horizontal axis, with its unit.
+    /// Label of the horizontal axis, with its unit.
     pub x: String,
-    /// What is on the vertical axis, with its unit.
+    /// Label of the vertical axis, with its unit.
     pub y: String,
-    /// The smallest and the largest value that there can be, where charts are to be compared;
-    /// else the axis is as long as the lines need it.
+    /// Range of the vertical axis, for charts that are compared with each other; `None` for the
+    /// range of the points.
     #[serde(skip)]
-    pub whole: Option<[f64; 2]>,
+    pub y_range: Option<[f64; 2]>,
     /// The lines.
     pub series: Vec<Series>,
 }
 
-/// A line.
+/// A line of a chart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// Its name.
+    /// Its name in the legend.
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
-    /// Which of the colours and signs it is drawn with: the same thing in all charts of a
-    /// figure has the same.
+    /// Index of its colour and of its character in text. A quantity has the same index in all
+    /// charts of a figure.
     #[serde(skip)]
     pub mark: usize,
 }
 
-/// The number at an axis, without digits that say nothing.
+/// Formats a number at an axis without trailing zeros.
 fn tick(value: f64) -> String {
     let text = format!("{value:.4}");
     match text.trim_end_matches('0').trim_end_matches('.') {
@@ -129,21 +129,21 @@ fn tick(value: f64) -> String {
     }
 }
 
-/// A figure could not be drawn.
+/// A figure cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("figure {number}: {message}")]
 pub struct FigureError {
-    /// Which.
+    /// Its number in the thesis.
     pub number: &'static str,
-    /// Why.
+    /// The cause.
     pub message: String,
 }
 
 impl Figure {
-    /// As SVG.
+    /// Draws the figure as SVG.
     ///
     /// # Errors
-    /// When it has nothing to draw.
+    /// When it has no panels.
     pub fn svg(&self) -> Result<String, FigureError> {
         svg::draw(self).map_err(|message| FigureError {
             number: self.number,
@@ -151,18 +151,18 @@ impl Figure {
         })
     }
 
-    /// As text for a terminal of this many columns.
+    /// Draws the figure as text for a terminal with this many columns.
     #[must_use]
     pub fn text(&self, columns: usize) -> String {
         text::draw(self, columns)
     }
 
-    /// Its numbers as a tidy table, one row a point; hierarchies as text.
+    /// Returns the content of the figure as a tidy table, with one row for each point or
+    /// hierarchy.
     #[must_use]
     pub fn table(&self) -> Table {
-        let mut table = Table::new(&[
-            "figure", "panel", "series", "x_is", "x", "y_is", "y", "made_by",
-        ]);
+        let mut table = Table::new(&["figure", "panel", "series", "x_is", "x", "y_is", "y"]);
+        table.provenance.clone_from(&self.provenance);
         for panel in &self.panels {
             match panel {
                 Panel::Chart(chart) => {
@@ -176,7 +176,6 @@ impl Figure {
                                 x.to_string(),
                                 chart.y.clone(),
                                 y.to_string(),
-                                self.provenance.clone(),
                             ]);
                         }
                     }
@@ -189,7 +188,6 @@ impl Figure {
                     String::new(),
                     String::new(),
                     String::new(),
-                    self.provenance.clone(),
                 ]),
             }
         }
@@ -198,7 +196,7 @@ impl Figure {
 }
 
 impl Chart {
-    /// The ranges of both axes; none without a finite point.
+    /// Returns the ranges of both axes; `None` if there is no finite point.
     fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let finite = || points().filter(|(x, y)| x.is_finite() && y.is_finite());
@@ -214,7 +212,7 @@ impl Chart {
             }
         };
         finite().next()?;
-        let vertical = self.whole.map(|[low, high]| (low, high));
+        let vertical = self.y_range.map(|[low, high]| (low, high));
         Some([
             range(|point| point.0),
             vertical.unwrap_or_else(|| range(|point| point.1)),

@@ -69,7 +69,7 @@ fn chart(experiment: &dyn AnyExperiment, primitive: &PrimitiveValues) -> Option<
         title: subtask.name.to_owned(),
         x: with_unit(name),
         y: String::from("action value Q"),
-        whole: None,
+        y_range: None,
         series: series
             .map(|(index, (action, points))| Series {
                 name: format!("action {} {action}", index + 1),

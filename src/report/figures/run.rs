@@ -171,7 +171,7 @@ impl RunSource {
             title: String::from("Mean difference of the better half to the best"),
             x: String::from("generation"),
             y: String::from("structural difference (points)"),
-            whole: None,
+            y_range: None,
             series: vec![Series {
                 name: String::from("mean difference"),
                 points: points.collect(),
@@ -198,7 +198,7 @@ impl RunSource {
             title: String::from("Fitness by rank"),
             x: String::from("generation"),
             y: String::from("mean trial length (time steps)"),
-            whole: None,
+            y_range: None,
             series: series.collect(),
         }
     }
@@ -230,7 +230,7 @@ impl RunSource {
             title: format!("State type {}", state_type + 1),
             x: String::from("generation"),
             y: String::from("probability of selection"),
-            whole: Some([0.0, 1.0]),
+            y_range: Some([0.0, 1.0]),
             series: series
                 .filter(|s| s.points.iter().any(|(_, p)| *p > 0.0))
                 .collect(),

@@ -107,7 +107,7 @@ impl View<'_> {
                 title: model.name.clone(),
                 x: String::from("generations (%)"),
                 y: y.to_owned(),
-                whole: None,
+                y_range: None,
                 series: Vec::new(),
             };
             for (arm, name) in self.evolving() {

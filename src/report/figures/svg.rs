@@ -1,4 +1,4 @@
-//! Figures as SVG.
+//! Draws figures as SVG.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -13,13 +13,13 @@ const CHART_HEIGHT: u32 = 330;
 const LEGEND_WIDTH: u32 = 138;
 /// Height of a level of a hierarchy in pixels.
 const LEVEL_HEIGHT: u32 = 54;
-/// Height of the title and of the provenance in pixels.
+/// Height of the title in pixels.
 const TITLE_HEIGHT: u32 = 34;
-/// Characters of provenance in a line.
+/// Most characters in a line of the provenance.
 const PROVENANCE_CHARACTERS: usize = 150;
 const FONT: &str = "sans-serif";
 
-/// Colours that colour-blind people tell apart (M. Okabe and K. Ito), the dark ones first.
+/// Colours that colour-blind people can tell apart (M. Okabe and K. Ito), dark ones first.
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -34,10 +34,10 @@ const COLOURS: [RGBColor; 8] = [
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Drawn = Result<(), String>;
 
-/// The figure as SVG, panels in rows of up to two.
+/// Draws the figure, with up to two panels in a row.
 pub(super) fn draw(figure: &Figure) -> Result<String, String> {
     if figure.panels.is_empty() {
-        return Err(String::from("there is nothing to draw"));
+        return Err(String::from("it has no panels"));
     }
     let per_row = if figure.panels.len() == 1 { 1 } else { 2 };
     let rows: Vec<_> = figure.panels.chunks(per_row).collect();
@@ -92,7 +92,7 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         );
     };
     let margin = 0.04 * (top - bottom);
-    // The legend stands beside the lines, not over them.
+    // The legend is beside the lines, so that it hides none of them.
     let (width, _) = area.dim_in_pixel();
     let (lines, legend) = area.split_horizontally(width.saturating_sub(LEGEND_WIDTH));
     let mut context = ChartBuilder::on(&lines)
@@ -132,7 +132,7 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
     Ok(())
 }
 
-/// Composite subtasks in boxes with a bold border, primitive ones without.
+/// Draws a hierarchy. Composite subtasks have a box, primitive subtasks have none.
 fn draw_sketch(area: &Area<'_>, sketch: &Sketch) -> Drawn {
     let (width, _) = area.dim_in_pixel();
     put(
@@ -143,7 +143,7 @@ fn draw_sketch(area: &Area<'_>, sketch: &Sketch) -> Drawn {
         HPos::Center,
     )?;
     let step = f64::from(width - 16) / sketch.columns();
-    // Names must fit between neighbours; six tenths of its size is a letter's width.
+    // Names must fit between neighbours. A letter is about 0.6 font sizes wide.
     let size = (step / (14.0 * 0.6)).clamp(5.0, 12.0);
     let place = |index: usize| {
         let node = &sketch.nodes[index];
@@ -188,7 +188,7 @@ fn put(area: &Area<'_>, text: &str, at: (i32, i32), size: i32, align: HPos) -> D
         .map_err(words)
 }
 
-/// The text in lines, broken between words.
+/// Breaks a text into lines, between words.
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {

@@ -1,4 +1,4 @@
-//! Figures as text in a terminal.
+//! Draws figures as text for a terminal.
 
 use std::fmt::Write;
 
@@ -8,14 +8,14 @@ use crate::report::table::short;
 
 /// Lines of a chart.
 const HEIGHT: usize = 16;
-/// Columns of the numbers at the vertical axis.
+/// Columns for the numbers at the vertical axis.
 const MARGIN: usize = 9;
-/// Fewest columns that a chart is drawn with.
+/// Smallest width of a chart in columns.
 const MIN_COLUMNS: usize = 30;
-/// What points are drawn with, series by series.
-const SIGNS: &[u8] = b"123456789abcdefghijklmnopqrstuvwxyz";
+/// Characters that points are drawn with, by the index of the series.
+const CHARACTERS: &[u8] = b"123456789abcdefghijklmnopqrstuvwxyz";
 
-/// The figure, panel below panel.
+/// Draws the figure, one panel below the other.
 pub(super) fn draw(figure: &Figure, columns: usize) -> String {
     let mut text = format!("Figure {}: {}\n", figure.number, figure.title);
     for panel in &figure.panels {
@@ -47,14 +47,11 @@ fn draw_chart(chart: &Chart, columns: usize) -> String {
     };
     // The first series is drawn last, so that it lies on top.
     for series in chart.series.iter().rev() {
-        let sign = SIGNS[series.mark % SIGNS.len()];
-        for &(x, y) in series
-            .points
-            .iter()
-            .filter(|(x, y)| x.is_finite() && y.is_finite())
-        {
+        let character = CHARACTERS[series.mark % CHARACTERS.len()];
+        let points = series.points.iter();
+        for &(x, y) in points.filter(|(x, y)| x.is_finite() && y.is_finite()) {
             let row = HEIGHT - 1 - place(y, bottom, top, HEIGHT);
-            grid[row][place(x, left, right, width)] = sign;
+            grid[row][place(x, left, right, width)] = character;
         }
     }
     let mut text = format!("{}\n{}\n", chart.title, chart.y);
@@ -80,7 +77,7 @@ fn draw_chart(chart: &Chart, columns: usize) -> String {
             text,
             "{:>MARGIN$}  {} {}",
             "",
-            char::from(SIGNS[series.mark % SIGNS.len()]),
+            char::from(CHARACTERS[series.mark % CHARACTERS.len()]),
             series.name
         );
     }

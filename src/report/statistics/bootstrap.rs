@@ -1,27 +1,28 @@
-//! Means and their bootstrap intervals.
+//! Means, and bootstrap intervals of statistics.
 
 use rand::RngExt;
 
 use super::Interval;
 use crate::random::{Purpose, stream};
 
-/// Resamples behind an interval: its ends then vary by about a fiftieth of its width.
+/// Number of bootstrap resamples. With it, the ends of an interval vary by about 2 % of its
+/// width.
 pub const RESAMPLES: usize = 5000;
 
-/// Mean of `values`; NaN of none.
+/// Returns the mean of `values`, or NaN if there are none.
 #[must_use]
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Median of `values`; NaN of none.
+/// Returns the median of `values`, or NaN if there are none.
 #[must_use]
 pub fn median(values: &[f64]) -> f64 {
     quantile(&sorted(values), 0.5)
 }
 
-/// Interquartile mean: the mean of what is left when a quarter of the values, rounded
-/// down, is left out at either end; NaN of none.
+/// Returns the interquartile mean: the mean of `values` without the lowest and the highest
+/// quarter, each rounded down to whole values. NaN if there are no values.
 #[must_use]
 pub fn iqm(values: &[f64]) -> f64 {
     let sorted = sorted(values);
@@ -29,20 +30,22 @@ pub fn iqm(values: &[f64]) -> f64 {
     mean(&sorted[cut..sorted.len() - cut])
 }
 
-/// The percentile-bootstrap 95 % interval of a statistic: every stratum is resampled by
-/// itself, with replacement, [`RESAMPLES`] times. The same strata give the same bits.
+/// Returns the percentile-bootstrap 95 % interval of a statistic. Each stratum is resampled
+/// separately, with replacement, [`RESAMPLES`] times.
+///
+/// The random stream is fixed, so the same strata give the same bits.
 #[must_use]
 pub fn bootstrap<T: Clone>(strata: &[Vec<T>], statistic: impl Fn(&[Vec<T>]) -> f64) -> Interval {
     let mut rng = stream(0, 0, 0, Purpose::Bootstrap);
-    let mut room = strata.to_vec();
+    let mut resample = strata.to_vec();
     let mut values: Vec<f64> = (0..RESAMPLES)
         .map(|_| {
-            for (drawn, stratum) in room.iter_mut().zip(strata) {
+            for (drawn, stratum) in resample.iter_mut().zip(strata) {
                 for place in drawn {
                     *place = stratum[rng.random_range(0..stratum.len())].clone();
                 }
             }
-            statistic(&room)
+            statistic(&resample)
         })
         .collect();
     values.sort_unstable_by(f64::total_cmp);
@@ -58,7 +61,8 @@ fn sorted(values: &[f64]) -> Vec<f64> {
     sorted
 }
 
-/// The quantile of sorted values, interpolated between neighbours; NaN of none.
+/// Returns a quantile of sorted values, interpolated linearly between neighbours. NaN if there
+/// are no values.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else {
         return f64::NAN;
@@ -74,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn means_are_those_of_scipy() {
+    fn means_agree_with_scipy() {
         // scipy.stats.trim_mean(..., 0.25)
         let values = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 100.0];
         assert_eq!(iqm(&values), 5.5);
@@ -88,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_of_a_mean_is_that_of_scipy_and_repeats() {
+    fn the_interval_of_a_mean_agrees_with_scipy_and_repeats() {
         let values = vec![
             12.0, 15.0, 9.0, 22.0, 30.0, 8.0, 11.0, 17.0, 25.0, 13.0, 40.0, 19.0,
         ];
@@ -102,8 +106,8 @@ mod tests {
     }
 
     #[test]
-    fn strata_are_resampled_by_themselves() {
-        // Two strata without spread: whatever is drawn, their difference is the same.
+    fn strata_are_resampled_separately() {
+        // Neither stratum has any spread, so every resample has the same difference.
         let strata = [vec![1.0; 5], vec![4.0; 3]];
         let found = bootstrap(&strata, |strata| mean(&strata[1]) - mean(&strata[0]));
         assert_eq!((found.low, found.high), (3.0, 3.0));

@@ -1,20 +1,20 @@
-//! Counts: exact intervals of a share, and the exact test of two.
+//! Proportions: exact intervals, and the exact test of a difference between two.
 
 use serde::Serialize;
 
 use super::Interval;
 
-/// How many of `n` show something.
+/// A count out of `n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Count {
-    /// Those that show it.
+    /// Number of observations that show the property.
     pub shown: u64,
-    /// All.
+    /// Number of observations.
     pub n: u64,
 }
 
 impl Count {
-    /// Counts.
+    /// Counts the observations that show a property.
     #[must_use]
     pub fn of(shows: impl IntoIterator<Item = bool>) -> Self {
         let (mut shown, mut n) = (0, 0);
@@ -25,32 +25,34 @@ impl Count {
         Self { shown, n }
     }
 
-    /// The share; NaN of none.
+    /// Returns the proportion, or NaN if there are no observations.
     #[must_use]
     pub fn share(self) -> f64 {
         self.shown as f64 / self.n as f64
     }
 
-    /// The exact 95 % interval of the share (C. J. Clopper and E. S. Pearson, Biometrika
-    /// 26, 1934).
+    /// Returns the exact 95 % interval of the proportion (C. J. Clopper and E. S. Pearson,
+    /// Biometrika 26, 1934).
     #[must_use]
     pub fn interval(self) -> Interval {
         let Self { shown, n } = self;
         let tail = 0.025;
         let low = match shown {
             0 => 0.0,
-            // The smallest share under which so many or more are not too rare.
+            // The smallest proportion for which `shown` or more is not too improbable.
             _ => bisect(|share| 1.0 - at_most(shown - 1, n, share) < tail),
         };
-        let high = match shown == n {
-            true => 1.0,
-            false => bisect(|share| at_most(shown, n, share) > tail),
+        let high = if shown == n {
+            1.0
+        } else {
+            bisect(|share| at_most(shown, n, share) > tail)
         };
         Interval { low, high }
     }
 }
 
-/// The largest share in [0, 1] for which `holds`, which holds for those below it.
+/// Returns the largest number in [0, 1] for which `holds`, given that it holds for all smaller
+/// ones.
 fn bisect(holds: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
@@ -64,7 +66,8 @@ fn bisect(holds: impl Fn(f64) -> bool) -> f64 {
     (low + high) / 2.0
 }
 
-/// Probability of at most `shown` of `n`, each with probability `share`.
+/// Returns the probability of at most `shown` successes in `n` trials with success probability
+/// `share`.
 fn at_most(shown: u64, n: u64, share: f64) -> f64 {
     let term = |k: u64| {
         let (k_, n_) = (k as f64, n as f64);
@@ -73,14 +76,15 @@ fn at_most(shown: u64, n: u64, share: f64) -> f64 {
     (0..=shown).map(term).sum()
 }
 
-/// Logarithm of the number of ways to choose `k` of `n`.
+/// Returns the logarithm of the binomial coefficient `n` over `k`.
 fn ln_choose(n: u64, k: u64) -> f64 {
     let ln_factorial = |m: u64| libm::lgamma(m as f64 + 1.0);
     ln_factorial(n) - ln_factorial(k) - ln_factorial(n - k)
 }
 
-/// Fisher's exact test, two-sided: the probability, if both shares were one, of a table
-/// with these margins that is as improbable as this one or more. 1 where one is empty.
+/// Returns the two-sided p-value of Fisher's exact test that two proportions are equal: the
+/// total probability, given the margins, of all tables that are at most as probable as the
+/// observed one. 1 if either count is out of none.
 #[must_use]
 pub fn fisher(a: Count, b: Count) -> f64 {
     let shown = a.shown + b.shown;
@@ -88,7 +92,7 @@ pub fn fisher(a: Count, b: Count) -> f64 {
     let probability =
         |k: u64| libm::exp(ln_choose(a.n, k) + ln_choose(b.n, shown - k) - ln_choose(all, shown));
     let observed = probability(a.shown);
-    // As probable up to rounding is as probable.
+    // Tables with the same probability must count despite rounding.
     let limit = observed * (1.0 + 1e-7);
     let possible = shown.saturating_sub(b.n)..=shown.min(a.n);
     let sum: f64 = possible.map(probability).filter(|&p| p <= limit).sum();
@@ -104,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn intervals_are_those_of_scipy() {
+    fn intervals_agree_with_scipy() {
         // scipy.stats.binomtest(k, n).proportion_ci(method='exact')
         for (shown, n, low, high) in [
             (4, 20, 0.057_333_997_05, 0.436_614_002_997),
@@ -123,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn the_test_is_that_of_scipy() {
+    fn the_test_agrees_with_scipy() {
         // scipy.stats.fisher_exact([[k, n - k], [m, l - m]])
         for (a, b, p) in [
             // The lady tasting tea.

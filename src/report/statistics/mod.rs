@@ -1,9 +1,9 @@
-//! The statistics of few, noisy runs.
+//! Statistics for few, noisy runs.
 //!
-//! The seed is the unit. Estimates come with percentile-bootstrap intervals over seeds, as
-//! R. Agarwal et al., *Deep Reinforcement Learning at the Edge of the Statistical
-//! Precipice* (NeurIPS 2021) recommends; counts with exact intervals; differences with
-//! exact tests. No interval comes without its n.
+//! The unit of observation is the seed. Estimates have percentile-bootstrap intervals over
+//! seeds, as recommended by R. Agarwal et al., *Deep Reinforcement Learning at the Edge of the
+//! Statistical Precipice* (NeurIPS 2021). Proportions have exact intervals. Differences are
+//! tested exactly where that is feasible. Every interval is reported with its n.
 
 mod bootstrap;
 mod counts;
@@ -24,27 +24,31 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// An estimate from `n` values.
+/// An estimate of a statistic from `n` values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
-    /// Values that it is made from.
+    /// Number of values.
     pub n: usize,
     /// The estimate.
     pub value: f64,
-    /// Its 95 % interval; none from a single value.
+    /// Its 95 % interval; `None` if any stratum has a single value.
     pub interval: Option<Interval>,
 }
 
 impl Estimate {
-    /// The statistic of `values` with its bootstrap interval; none without values.
+    /// Estimates a statistic of `values` with its bootstrap interval.
+    ///
+    /// Returns `None` if there are no values.
     #[must_use]
     pub fn of(values: &[f64], statistic: fn(&[f64]) -> f64) -> Option<Self> {
         let strata = [values.to_vec()];
         Self::stratified(&strata, |strata| statistic(&strata[0]))
     }
 
-    /// A statistic of strata, each resampled by itself, with its bootstrap interval; none
-    /// where a stratum is empty.
+    /// Estimates a statistic of strata with its bootstrap interval. Each stratum is resampled
+    /// separately.
+    ///
+    /// Returns `None` if there are no strata or one is empty.
     #[must_use]
     pub fn stratified<T: Clone>(
         strata: &[Vec<T>],

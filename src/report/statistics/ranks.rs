@@ -1,10 +1,11 @@
-//! Two samples compared by order alone.
+//! Comparison of two samples by ranks.
 
-/// Values up to which the test is exact; beyond, the normal approximation is as good.
+/// Total sample size up to which the test is exact. Above it, the normal approximation is as
+/// good.
 const MAX_EXACT: usize = 120;
 
-/// Probability that a value of `a` is an improvement on, that is smaller than, one of `b`;
-/// equal ones count half. NaN without values.
+/// Returns the probability that a random value of `a` is smaller, and so better, than a random
+/// value of `b`. Ties count half. NaN if either sample is empty.
 #[must_use]
 pub fn probability_of_improvement(a: &[f64], b: &[f64]) -> f64 {
     let one = |x: f64, y: f64| match x.total_cmp(&y) {
@@ -16,10 +17,13 @@ pub fn probability_of_improvement(a: &[f64], b: &[f64]) -> f64 {
     pairs.sum::<f64>() / (a.len() * b.len()) as f64
 }
 
-/// The Mann-Whitney test, two-sided: the probability, if both samples came from one
-/// distribution, of a rank sum at least as far from its expectation. Exact given the
-/// ties for up to 120 values together, else by the normal approximation with
-/// corrections for ties and continuity. 1 where a sample is empty.
+/// Returns the two-sided p-value of the Mann-Whitney test: the probability, if both samples come
+/// from one distribution, of a rank sum at least as far from its expectation as the observed
+/// one.
+///
+/// For up to 120 values in total the p-value is exact, conditional on the ties. For more it is
+/// the normal approximation with corrections for ties and continuity. 1 if either sample is
+/// empty.
 #[must_use]
 pub fn mann_whitney(a: &[f64], b: &[f64]) -> f64 {
     if a.is_empty() || b.is_empty() {
@@ -27,13 +31,14 @@ pub fn mann_whitney(a: &[f64], b: &[f64]) -> f64 {
     }
     let ranks = doubled_ranks(&[a, b].concat());
     let observed: usize = ranks[..a.len()].iter().sum();
-    match ranks.len() <= MAX_EXACT {
-        true => exact(&ranks, a.len(), observed),
-        false => approximate(&ranks, a.len(), observed),
+    if ranks.len() <= MAX_EXACT {
+        exact(&ranks, a.len(), observed)
+    } else {
+        approximate(&ranks, a.len(), observed)
     }
 }
 
-/// Twice the mid-rank of each value, so that it is whole.
+/// Returns twice the mid-rank of each value, which is an integer.
 fn doubled_ranks(values: &[f64]) -> Vec<usize> {
     let count = |of: &dyn Fn(&f64) -> bool| values.iter().filter(|&v| of(v)).count();
     let rank = |value: &f64| {
@@ -44,10 +49,11 @@ fn doubled_ranks(values: &[f64]) -> Vec<usize> {
     values.iter().map(rank).collect()
 }
 
-/// Share of all choices of `size` of the ranks whose sum is as far from the expectation.
+/// Returns the share, among all choices of `size` of the ranks, of those whose sum is at least
+/// as far from the expectation as `observed`.
 fn exact(ranks: &[usize], size: usize, observed: usize) -> f64 {
     let total: usize = ranks.iter().sum();
-    // ways[k][s]: choices of k of the ranks so far that sum to s.
+    // ways[k][s]: number of choices of k of the ranks so far with sum s.
     let mut ways = vec![vec![0.0_f64; total + 1]; size + 1];
     ways[0][0] = 1.0;
     for &rank in ranks {
@@ -59,7 +65,7 @@ fn exact(ranks: &[usize], size: usize, observed: usize) -> f64 {
             }
         }
     }
-    // Distances from the expectation, times the number of ranks, are whole.
+    // Distances from the expectation, times the number of ranks, are integers.
     let distance = |sum: usize| (sum * ranks.len()).abs_diff(size * total);
     let far = distance(observed);
     let all: f64 = ways[size].iter().sum();
@@ -94,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_test_is_that_of_scipy() {
+    fn the_test_agrees_with_scipy() {
         // Hollander and Wolfe (1973), p. 69f.; scipy.stats.mannwhitneyu(method='exact').
         let a = [0.80, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46];
         let b = [1.15, 0.88, 0.90, 0.74, 1.21];
@@ -108,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_and_approximate_agree_where_both_can_be_had() {
+    fn the_exact_and_the_approximate_test_agree() {
         let a: Vec<_> = (1..=60).map(f64::from).collect();
         let b: Vec<_> = a.iter().map(|value| value + 12.5).collect();
         let ranks = doubled_ranks(&[a.clone(), b.clone()].concat());
@@ -124,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn improvement_is_being_smaller() {
+    fn a_smaller_value_is_an_improvement() {
         assert_eq!(probability_of_improvement(&[1.0, 2.0], &[3.0]), 1.0);
         assert_eq!(probability_of_improvement(&[3.0], &[3.0]), 0.5);
         assert_eq!(probability_of_improvement(&[1.0, 4.0], &[2.0, 3.0]), 0.5);

@@ -1,5 +1,7 @@
-//! The tables of a study: tidy, one row an observation, units in the names of columns.
+//! The tables of a study. They are tidy: one row for each observation, and units in the names
+//! of columns.
 
+use super::claims::Verdict;
 use super::facts::Facts;
 use super::findings::Findings;
 use super::metrics::{metrics, traits};
@@ -8,77 +10,62 @@ use super::statistics::{Estimate, Interval};
 use super::study::Study;
 use super::table::Table;
 
-/// Columns that say what a row is of.
+/// Columns that identify a run.
 const RUN_COLUMNS: [&str; 4] = ["study", "scenario", "arm", "seed"];
 
-/// One row a run.
+/// Returns a table with one row for each run.
 #[must_use]
 pub fn runs_table(study: &Study, all: &[Facts], provenance: &Provenance) -> Table {
-    let types = all
-        .iter()
-        .map(|facts| facts.winner.selectable.len())
-        .max()
-        .unwrap_or(0);
-    let mut table = Table::new(&RUN_COLUMNS);
-    table
-        .header
-        .extend(metrics(types).into_iter().map(|metric| metric.name));
-    table.header.extend(
-        traits(types)
-            .into_iter()
-            .map(|of| of.name.replace(' ', "_")),
-    );
+    let types = all.iter().map(|facts| facts.winner.selectable.len());
+    let types = types.max().unwrap_or(0);
+    let (metrics, traits) = (metrics(types), traits(types));
+    let mut table = new_table(&RUN_COLUMNS, provenance);
+    let header = &mut table.header;
+    header.extend(metrics.iter().map(|metric| metric.name.clone()));
+    header.extend(traits.iter().map(|of| of.name.replace(' ', "_")));
     let more = [
         "fresh_trial_steps_standard_error",
         "tree",
         "structure",
         "version",
-        "command",
     ];
-    table.header.extend(more.map(str::to_owned));
+    header.extend(more.map(str::to_owned));
     for facts in all {
         let mut row = run_cells(study, facts);
-        row.extend(
-            metrics(types)
-                .iter()
-                .map(|metric| optional((metric.of)(facts))),
-        );
-        row.extend(traits(types).iter().map(|of| optional((of.of)(facts))));
+        row.extend(metrics.iter().map(|metric| optional((metric.of)(facts))));
+        row.extend(traits.iter().map(|of| optional((of.of)(facts))));
         row.extend([
             optional(facts.fresh.standard_error),
             facts.winner.tree.clone(),
             facts.winner.structure.clone(),
             facts.version.clone(),
-            provenance.command.clone(),
         ]);
         table.rows.push(row);
     }
     table
 }
 
-/// One row a generation of a run.
+/// Returns a table with one row for each generation of each run.
 #[must_use]
-pub fn generations_table(study: &Study, all: &[Facts]) -> Table {
-    let mut table = Table::new(&RUN_COLUMNS);
+pub fn generations_table(study: &Study, all: &[Facts], provenance: &Provenance) -> Table {
+    let mut table = new_table(&RUN_COLUMNS, provenance);
     let more = [
         "generation",
         "best_fitness_trial_steps",
         "middle_fitness_trial_steps",
         "structural_difference",
         "policy_change",
-        "version",
     ];
     table.header.extend(more.map(str::to_owned));
     for facts in all {
-        for (index, moment) in facts.course.iter().enumerate() {
+        for (index, generation) in facts.course.iter().enumerate() {
             let mut row = run_cells(study, facts);
-            row.push((index + 1).to_string());
             row.extend([
-                moment.best_steps.to_string(),
-                moment.middle_steps.to_string(),
-                moment.difference.to_string(),
-                moment.policy_change.to_string(),
-                facts.version.clone(),
+                (index + 1).to_string(),
+                generation.best_steps.to_string(),
+                generation.middle_steps.to_string(),
+                generation.difference.to_string(),
+                generation.policy_change.to_string(),
             ]);
             table.rows.push(row);
         }
@@ -86,10 +73,11 @@ pub fn generations_table(study: &Study, all: &[Facts]) -> Table {
     table
 }
 
-/// One row a number of a scenario and arm, over seeds.
+/// Returns a table with one row for each metric of each scenario and arm, summarised over
+/// seeds.
 #[must_use]
 pub fn metrics_table(findings: &Findings) -> Table {
-    let mut table = Table::new(&[
+    let columns = [
         "study",
         "scenario",
         "arm",
@@ -101,30 +89,29 @@ pub fn metrics_table(findings: &Findings) -> Table {
         "mean",
         "mean_low_95",
         "mean_high_95",
-        "versions",
-    ]);
-    for kind in &findings.kinds {
-        for summary in &kind.metrics {
+    ];
+    let mut table = new_table(&columns, &findings.provenance);
+    for group in &findings.groups {
+        for summary in &group.metrics {
             let mut row = vec![
                 findings.provenance.study.clone(),
-                kind.scenario.clone(),
-                kind.arm.clone(),
+                group.scenario.clone(),
+                group.arm.clone(),
                 summary.metric.clone(),
                 summary.mean.n.to_string(),
             ];
             row.extend(estimate_cells(Some(summary.iqm)));
             row.extend(estimate_cells(Some(summary.mean)));
-            row.push(findings.provenance.versions.join("; "));
             table.rows.push(row);
         }
     }
     table
 }
 
-/// One row a comparison of two arms.
+/// Returns a table with one row for each comparison of two arms.
 #[must_use]
 pub fn comparisons_table(findings: &Findings) -> Table {
-    let mut table = Table::new(&[
+    let columns = [
         "study",
         "scenario",
         "arm",
@@ -140,8 +127,8 @@ pub fn comparisons_table(findings: &Findings) -> Table {
         "probability_low_95",
         "probability_high_95",
         "p_mann_whitney",
-        "versions",
-    ]);
+    ];
+    let mut table = new_table(&columns, &findings.provenance);
     for comparison in &findings.comparisons {
         let mut row = vec![
             findings.provenance.study.clone(),
@@ -154,16 +141,15 @@ pub fn comparisons_table(findings: &Findings) -> Table {
         row.extend(estimate_cells(comparison.difference_mean));
         row.extend(estimate_cells(Some(comparison.improvement)));
         row.push(optional(comparison.p));
-        row.push(findings.provenance.versions.join("; "));
         table.rows.push(row);
     }
     table
 }
 
-/// One row a claim and arm.
+/// Returns a table with one row for each claim and arm.
 #[must_use]
 pub fn claims_table(findings: &Findings) -> Table {
-    let mut table = Table::new(&[
+    let columns = [
         "study",
         "claim",
         "thesis_section",
@@ -176,18 +162,17 @@ pub fn claims_table(findings: &Findings) -> Table {
         "share_high_95",
         "p_fisher_against_control",
         "verdict",
-        "versions",
-    ]);
+    ];
+    let mut table = new_table(&columns, &findings.provenance);
     for judged in &findings.claims {
+        // The p-value and the verdict belong to the tested arm: the first with its count.
+        let tested = judged
+            .arms
+            .iter()
+            .position(|(_, count)| *count == judged.tested);
         for (index, (arm, count)) in judged.arms.iter().enumerate() {
             let Interval { low, high } = count.interval();
-            // The verdict is on the tested arm, the one whose count it was made from.
-            let is_tested = *count == judged.tested
-                && judged
-                    .arms
-                    .iter()
-                    .position(|(_, other)| *other == judged.tested)
-                    == Some(index);
+            let is_tested = tested == Some(index);
             let verdict = judged.verdict.filter(|_| is_tested);
             table.rows.push(vec![
                 findings.provenance.study.clone(),
@@ -201,12 +186,18 @@ pub fn claims_table(findings: &Findings) -> Table {
                 low.to_string(),
                 high.to_string(),
                 optional(judged.p.filter(|_| is_tested)),
-                verdict.map_or_else(String::new, |verdict| verdict.words().to_owned()),
-                findings.provenance.versions.join("; "),
+                optional(verdict.map(Verdict::words)),
             ]);
         }
     }
     table
+}
+
+fn new_table(columns: &[&str], provenance: &Provenance) -> Table {
+    Table {
+        provenance: provenance.line(),
+        ..Table::new(columns)
+    }
 }
 
 fn run_cells(study: &Study, facts: &Facts) -> Vec<String> {
