@@ -16,7 +16,8 @@ use std::process::Command;
 use common::{output, program, short, stderr, stdout, threads};
 use maxq_lab::report::figures::{FigureNumber, Panel, RunSource};
 use maxq_lab::report::{
-    Arm, Base, Facts, Findings, FreshFacts, JudgedClaim, Moment, Plan, Study, Verdict, Winner,
+    Arm, Base, Facts, Findings, FreshFacts, GenerationFacts, JudgedClaim, Plan, Study, Verdict,
+    Winner,
 };
 
 const SEEDS: u64 = 30;
@@ -53,7 +54,7 @@ fn facts(
         true => names(&["ApproachBattery"]),
         false => names(&["ApproachBattery", "Wander"]),
     };
-    let moment = |best: f64, difference: f64| Moment {
+    let moment = |best: f64, difference: f64| GenerationFacts {
         best_steps: best,
         middle_steps: 2.0 * best,
         difference,

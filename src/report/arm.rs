@@ -1,4 +1,4 @@
-//! The arms of a study: what is done with each scenario.
+//! The arms of a study: the variants of a scenario that are compared.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,52 +10,52 @@ use crate::scenario::{
 };
 use crate::worlds::Catalogue;
 
-/// One arm: a base and named settings.
+/// One arm: a base, and settings on top of it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Arm {
-    /// Its name, used in folders; of the letters that scenario names are made of.
+    /// Name, used in the names of folders. It follows the rules for names of scenarios.
     #[schemars(regex(pattern = r"^[a-z0-9_][a-z0-9_.-]{0,63}$"))]
     pub name: String,
-    /// What it does.
+    /// What is done with the scenario.
     #[serde(default)]
     pub base: Base,
-    /// Changes to the scenario, `key=value` as for `run --set`.
+    /// Changes of the scenario, `KEY=VALUE` as for `run --set`.
     #[serde(default)]
     pub settings: Vec<String>,
 }
 
 /// What an arm does with a scenario.
 ///
-/// The arms without crossover have no end of their own. They get as many generations as
-/// the evolved run of the same scenario, settings and seed has, and with as many
-/// individuals and trials in each: a *matched* budget.
+/// An arm without crossover never converges. It has a *matched budget*: as many generations,
+/// individuals and trials as the evolved run of the same scenario, settings and seed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Base {
-    /// The method: evolution as the scenario says.
+    /// Evolution as the scenario says.
     #[default]
     Evolved,
-    /// Chance in the place of fitness: the control that tells selection from drift.
+    /// Individuals are ranked at random instead of by fitness: the control that tells selection
+    /// from drift.
     RandomSelection,
-    /// Composite subtasks choose uniformly among the children that can act: the control
-    /// that tells what learning between children adds.
+    /// Composite subtasks choose at random among the children that can act: the control that
+    /// shows what learning to choose adds.
     RandomChoice,
-    /// The complete hierarchy (Thesis Figure 4.2) in every place of the population; all
-    /// learn on, generation after generation. Matched budget.
+    /// Every individual has the complete hierarchy (Thesis Figure 4.2) and only learns.
+    /// Matched budget.
     HandDesigned,
-    /// The places that crossover would fill get fresh random hierarchies; the best are
-    /// kept and scored again, as evolution does. Matched budget.
+    /// Random hierarchies are drawn where evolution would use crossover. The best are kept and
+    /// scored again, as in evolution. Matched budget.
     RandomSearch,
-    /// Offspring inherit structure only: Darwinian instead of Lamarckian.
+    /// Offspring inherit structure only (Darwinian instead of Lamarckian inheritance).
     NoLearningInheritance,
-    /// A root that chooses among all primitive subtasks, learning as under
-    /// `hand_designed`. Matched budget.
+    /// Every individual has a root that chooses among all primitive subtasks, and only learns.
+    /// Matched budget.
     Flat,
 }
 
 impl Base {
-    /// All of them.
+    /// All bases.
     pub const ALL: [Self; 7] = [
         Self::Evolved,
         Self::RandomSelection,
@@ -66,7 +66,7 @@ impl Base {
         Self::Flat,
     ];
 
-    /// Its name in plans.
+    /// Returns its name in plans.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -80,19 +80,19 @@ impl Base {
         }
     }
 
-    /// The base with this name.
+    /// Returns the base with a name.
     #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|base| base.name() == name)
     }
 
-    /// The names of all, for messages.
+    /// Returns the names of all bases, for messages.
     #[must_use]
     pub fn names() -> String {
         Self::ALL.map(Self::name).join(", ")
     }
 
-    /// Whether its budget is that of the evolved run of the same seed.
+    /// Returns whether it has a matched budget.
     #[must_use]
     pub fn is_matched(self) -> bool {
         matches!(self, Self::HandDesigned | Self::RandomSearch | Self::Flat)
@@ -102,16 +102,16 @@ impl Base {
 /// Why an arm cannot be applied to a scenario.
 #[derive(Debug, thiserror::Error)]
 pub enum ArmError {
-    /// A setting cannot be made.
+    /// A setting does not fit the scenario.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// The scenario cannot be made ready.
+    /// The experiment of the scenario cannot be built.
     #[error(transparent)]
     Setup(#[from] SetupError),
 }
 
 impl Arm {
-    /// The arm that is nothing but its base.
+    /// Creates the arm of a base without settings, named like the base.
     #[must_use]
     pub fn of(base: Base) -> Self {
         Self {
@@ -121,10 +121,12 @@ impl Arm {
         }
     }
 
-    /// The scenario under this arm; its generation limit is still the scenario's own.
+    /// Returns the scenario under this arm. Its generation limit does not change, even if the
+    /// arm has a matched budget.
     ///
     /// # Errors
-    /// When a setting does not fit the scenario, or the result cannot be made ready.
+    /// When a setting does not fit the scenario, or the experiment of the result cannot be
+    /// built.
     pub fn apply(&self, scenario: &Scenario) -> Result<Scenario, ArmError> {
         let mut scenario = scenario.clone().with_settings(&self.settings)?;
         let evolution = &mut scenario.evolution;
@@ -142,6 +144,7 @@ impl Arm {
     }
 }
 
+/// Gives every individual the hierarchy `design`, which then only learns.
 fn learning_only(
     scenario: &mut Scenario,
     design: fn(&Catalogue) -> Tree,

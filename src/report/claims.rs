@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::facts::{Facts, Moment};
+use super::facts::{Facts, GenerationFacts};
 use super::statistics::{Count, fisher};
 
 /// Significance level: a smaller p-value counts as evidence.
@@ -228,7 +228,7 @@ pub const CLAIMS: &[Claim] = &[
         scope: Scope::Each,
         shows: |e| {
             let run = e.run()?;
-            let of = |m: &Moment| m.middle_steps;
+            let of = |m: &GenerationFacts| m.middle_steps;
             Some(run.over(0.9, 1.0, of) <= 0.75 * run.over(0.0, 0.1, of))
         },
     },
@@ -250,7 +250,7 @@ pub const CLAIMS: &[Claim] = &[
         scope: Scope::Each,
         shows: |e| {
             let run = e.run()?;
-            let of = |m: &Moment| m.policy_change;
+            let of = |m: &GenerationFacts| m.policy_change;
             let moves = run.course.len() >= 8;
             moves.then(|| run.over(0.75, 1.0, of) < 0.5 * run.over(0.0, 0.25, of))
         },

@@ -1,16 +1,16 @@
-//! What a report needs to know of a run, read from its folder.
+//! The facts of finished runs, read from their folders.
 
 use serde::Serialize;
 
 use super::arm::{Arm, Base};
-use super::single::{SingleError, check_evaluation, check_origin, fresh, summary};
+use super::results::{StudyRunError, check_evaluation, check_origin, evaluation, summary};
 use super::study::{RunId, Study};
-use crate::evolution::{GenerationRecord, RankedRecord, TreeError};
+use super::winner::Winner;
+use crate::evolution::GenerationRecord;
 use crate::files::FileError;
-use crate::hierarchy::{canonical, without_repeats};
-use crate::lab::{AnyExperiment, Event, RunError, experiment, read_events};
+use crate::lab::{Event, RunError, experiment, read_events};
 
-/// A run that is done.
+/// The facts of a finished run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Facts {
     /// The run.
@@ -18,72 +18,57 @@ pub struct Facts {
     pub run: RunId,
     /// Version and commit of the program that did it.
     pub version: String,
-    /// Generations to termination.
+    /// Number of generations.
     pub generations: u64,
-    /// Whether evolution converged; else it ended at its limit.
+    /// Whether evolution converged; `false` if it ended at its generation limit.
     pub converged: bool,
-    /// Control steps, training of the primitive subtasks included.
+    /// Number of control steps, including the training of the primitive subtasks.
     pub control_steps: u64,
     /// The best individual of the last generation.
     pub winner: Winner,
-    /// Generation by generation.
-    pub course: Vec<Moment>,
-    /// How good the winner's structure is.
+    /// Numbers of each generation.
+    pub course: Vec<GenerationFacts>,
+    /// Results of the winner's structure on fresh trials.
     pub fresh: FreshFacts,
 }
 
-/// The structure that a run ended with.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Winner {
-    /// Its text.
-    pub tree: String,
-    /// Its structure: children sorted, repeated primitive children left out.
-    pub structure: String,
-    /// Its composite subtasks, the root counted.
-    pub composites: Vec<String>,
-    /// Its distinct primitive subtasks.
-    pub primitives: Vec<String>,
-    /// For each state type the primitive subtasks that can be selected.
-    pub selectable: Vec<Vec<String>>,
-}
-
-/// One generation, in numbers.
+/// Numbers of one generation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Moment {
+pub struct GenerationFacts {
     /// Mean time steps of a scored trial of the individual with the best fitness.
     pub best_steps: f64,
-    /// The same of the individual in the middle of the population by fitness: of 16 the
-    /// eighth.
+    /// Mean time steps of a scored trial of the middle individual by fitness: the eighth of 16.
     pub middle_steps: f64,
-    /// Mean structural difference of the better half to the best (Thesis 4.5.2).
+    /// Mean structural difference of the better half of the population to the best individual
+    /// (Thesis 4.5.2); 0 if they are equal, and negative otherwise.
     pub difference: f64,
-    /// How much selection probabilities have changed since the generation before: total
-    /// variation distance, averaged over state types; 0 in the first.
+    /// Total variation distance of the selection probabilities from those of the generation
+    /// before, averaged over state types; 0 in the first generation.
     pub policy_change: f64,
 }
 
-/// How good the winner's structure is, by fresh hierarchies on fresh trials.
+/// Results of the winner's structure on fresh trials, with new hierarchies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FreshFacts {
     /// Mean time steps of a trial.
     pub steps: f64,
-    /// Its standard error.
+    /// Standard error of the mean.
     pub standard_error: Option<f64>,
-    /// Share of the trials that delivered.
+    /// Proportion of the trials that delivered.
     pub delivered_share: f64,
 }
 
 impl Facts {
-    /// The facts of a run; none while it is not done.
+    /// Reads the facts of a run; `None` if it is not done.
     ///
     /// # Errors
-    /// When its folder holds another run, or a file that cannot be read.
-    pub fn read(study: &Study, run: &RunId) -> Result<Option<Self>, SingleError> {
+    /// When its folder holds another run, or a file cannot be read.
+    pub fn read(study: &Study, run: &RunId) -> Result<Option<Self>, StudyRunError> {
         let folder = study.run_folder(run);
-        let (Some(outcome), Some(fresh)) = (summary(&folder)?, fresh(&folder)?) else {
+        let (Some(outcome), Some(found)) = (summary(&folder)?, evaluation(&folder)?) else {
             return Ok(None);
         };
-        check_evaluation(study, run, &outcome, &fresh)?;
+        check_evaluation(study, run, &outcome, &found)?;
         let scenario = study.arm(run).apply(study.scenario(run))?;
         let manifest = check_origin(study, run, &scenario)?;
         let file = folder.join("events.jsonl");
@@ -115,26 +100,27 @@ impl Facts {
             winner,
             course: course(&records),
             fresh: FreshFacts {
-                steps: fresh.evaluation.mean,
-                standard_error: fresh.evaluation.standard_error,
-                delivered_share: fresh.evaluation.delivered_share,
+                steps: found.evaluation.mean,
+                standard_error: found.evaluation.standard_error,
+                delivered_share: found.evaluation.delivered_share,
             },
         }))
     }
 
-    /// A number of the course at a share of the generations: 0 the first, 1 the last.
+    /// Returns a number of the generation at a point of the run, from 0 for the first generation
+    /// to 1 for the last.
     #[must_use]
-    pub fn at(&self, share: f64, of: impl Fn(&Moment) -> f64) -> Option<f64> {
+    pub fn at(&self, share: f64, of: impl Fn(&GenerationFacts) -> f64) -> Option<f64> {
         let last = self.course.len().checked_sub(1)?;
         self.course
             .get((last as f64 * share).round() as usize)
             .map(of)
     }
 
-    /// The mean of a number over a part of the course, from one share of the generations
-    /// to another; at least one generation.
+    /// Returns the mean of a number over the generations between two points of the run, given as
+    /// for [`Facts::at`]. The part has at least one generation.
     #[must_use]
-    pub fn over(&self, from: f64, to: f64, of: impl Fn(&Moment) -> f64) -> f64 {
+    pub fn over(&self, from: f64, to: f64, of: impl Fn(&GenerationFacts) -> f64) -> f64 {
         let n = self.course.len();
         let first = ((n as f64 * from).floor() as usize).min(n.saturating_sub(1));
         let end = ((n as f64 * to).ceil() as usize).clamp(first + 1, n.max(first + 1));
@@ -172,17 +158,17 @@ impl<'s> StudyRuns<'s> {
     }
 }
 
-fn course(records: &[Box<GenerationRecord>]) -> Vec<Moment> {
+fn course(records: &[Box<GenerationRecord>]) -> Vec<GenerationFacts> {
     let mut before: Option<&GenerationRecord> = None;
     let mut course = Vec::with_capacity(records.len());
     for record in records {
-        // By fitness, not by rank: under random selection the ranks say nothing.
+        // Sorted by fitness, because ranks are random under random selection.
         let mut means: Vec<_> = (1..=record.individuals.len())
             .filter_map(|rank| record.mean_trial_steps(rank))
             .collect();
         means.sort_unstable_by(f64::total_cmp);
         let at = |index: usize| means.get(index).copied().unwrap_or(f64::NAN);
-        course.push(Moment {
+        course.push(GenerationFacts {
             best_steps: at(0),
             middle_steps: at((means.len() / 2).saturating_sub(1)),
             difference: record.mean_difference,
@@ -209,23 +195,4 @@ fn policy_change(before: &GenerationRecord, after: &GenerationRecord) -> f64 {
         })
         .collect();
     distances.iter().sum::<f64>() / distances.len().max(1) as f64
-}
-
-impl Winner {
-    /// Reads the tree of the best individual.
-    fn of(record: &RankedRecord, experiment: &dyn AnyExperiment) -> Result<Self, TreeError> {
-        let catalogue = experiment.catalogue();
-        let tree = experiment.read_tree(&record.tree)?;
-        let composites = tree.nodes().iter().filter_map(|node| {
-            let subtask = catalogue.subtask(node.subtask);
-            subtask.is_composite().then(|| subtask.name.to_owned())
-        });
-        Ok(Self {
-            composites: composites.collect(),
-            structure: canonical(&without_repeats(&tree, catalogue), catalogue),
-            tree: record.tree.clone(),
-            primitives: record.primitives.clone(),
-            selectable: record.primitives_by_state_type.clone(),
-        })
-    }
 }

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::single::{FRESH, SingleError, fresh, summary};
+use super::results::{EVALUATION, StudyRunError, evaluation, summary};
 use super::study::{RunId, Study, StudyError};
 use crate::files::{FileError, sync_folder};
 use crate::lab::{FolderError, RunFolder};
 
 /// Files of a run that depend on the plan alone.
-const DETERMINED: [&str; 3] = ["events.jsonl", "checkpoint.json", FRESH];
+const DETERMINED: [&str; 3] = ["events.jsonl", "checkpoint.json", EVALUATION];
 
 /// Files of the process that works on a run; they are not copied.
 const LEFT_BEHIND: [&str; 2] = ["lock", "pulse.json"];
@@ -34,7 +34,7 @@ pub enum MergeError {
     },
     /// A run cannot be read.
     #[error(transparent)]
-    Run(#[from] SingleError),
+    Run(#[from] StudyRunError),
     /// A run cannot be copied because a process is working on it.
     #[error(transparent)]
     Folder(#[from] FolderError),
@@ -144,7 +144,7 @@ impl Candidate {
         let over = summary(&folder)?.is_some();
         let length = fs::metadata(folder.join("events.jsonl")).map_or(0, |data| data.len());
         Ok(Some(Self {
-            done: over && fresh(&folder)?.is_some(),
+            done: over && evaluation(&folder)?.is_some(),
             over,
             length,
             manifest,

@@ -1,4 +1,4 @@
-//! A run as tables and text.
+//! Exports a run as tables and text.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ use crate::hierarchy::to_dot;
 use crate::lab::{SetupError, experiment};
 use crate::scenario::Scenario;
 
-/// One row an individual of a generation.
+/// Returns a table with one row for each individual of each generation.
 #[must_use]
 pub fn individuals(run: &RunSource) -> Table {
     let mut table = Table::new(&[
@@ -76,7 +76,7 @@ fn mutations(origin: &Origin) -> String {
     words.join("; ")
 }
 
-/// The run's generations and what they come from.
+/// Returns the generations of the run and its provenance as JSON.
 ///
 /// # Errors
 /// When serialisation fails.
@@ -97,7 +97,7 @@ pub fn json(run: &RunSource) -> Result<String, serde_json::Error> {
     Ok(serde_json::to_string_pretty(&whole)? + "\n")
 }
 
-/// The run in short, for people.
+/// Returns a summary of the run as Markdown.
 ///
 /// # Errors
 /// When the run has no best hierarchy.
@@ -131,7 +131,7 @@ pub fn markdown(run: &RunSource) -> Result<String, SourceError> {
     Ok(text)
 }
 
-/// The best hierarchy of the last generation, for Graphviz.
+/// Returns the best hierarchy of the last generation as DOT, for Graphviz.
 ///
 /// # Errors
 /// When the scenario cannot be made ready.

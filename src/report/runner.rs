@@ -7,9 +7,9 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::controls::StudyControls;
-use super::single::{Fresh, Single, SingleError};
+use super::results::{StudyRunError, WinnerEvaluation};
 use super::study::{RunId, Study};
+use super::study_run::{StudyControls, StudyRun};
 use crate::lab::Keep;
 
 /// An event in the work on the runs of a study.
@@ -22,7 +22,7 @@ pub enum StudyEvent {
         /// The run.
         run: RunId,
         /// The evaluation of its winner.
-        fresh: Box<Fresh>,
+        evaluation: Box<WinnerEvaluation>,
         /// The time that the work took.
         took: Duration,
     },
@@ -33,7 +33,7 @@ pub enum StudyEvent {
         /// The run.
         run: RunId,
         /// The cause.
-        error: SingleError,
+        error: StudyRunError,
     },
 }
 
@@ -57,20 +57,20 @@ pub fn run_study(
         while let Some(run) = next() {
             report(StudyEvent::Started(run));
             let started = Instant::now();
-            let single = Single {
+            let study_run = StudyRun {
                 study,
                 run,
                 keep,
                 controls,
             };
-            match single.carry_out() {
-                Ok(fresh) => report(StudyEvent::Done {
+            match study_run.finish() {
+                Ok(evaluation) => report(StudyEvent::Done {
                     run,
-                    fresh: Box::new(fresh),
+                    evaluation: Box::new(evaluation),
                     took: started.elapsed(),
                 }),
-                Err(SingleError::Stopped(_)) => {}
-                Err(error) if single.is_elsewhere(&error) => report(StudyEvent::Elsewhere(run)),
+                Err(StudyRunError::Stopped(_)) => {}
+                Err(error) if study_run.is_elsewhere(&error) => report(StudyEvent::Elsewhere(run)),
                 Err(error) => report(StudyEvent::Failed { run, error }),
             }
         }

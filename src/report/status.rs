@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::single::{FRESH, SUMMARY, SingleError, fresh, summary};
+use super::results::{EVALUATION, SUMMARY, StudyRunError, evaluation, summary};
 use super::study::{RunId, Study};
 use crate::files::Stamp;
 use crate::lab::{Event, Follower, Life, News, Recording, RunError};
@@ -153,7 +153,7 @@ impl Watched {
 
     fn look(&mut self, now: Instant) -> &RunStatus {
         let folder = &self.waiting.folder;
-        let results = [SUMMARY, FRESH].map(|name| Stamp::of(&folder.join(name)));
+        let results = [SUMMARY, EVALUATION].map(|name| Stamp::of(&folder.join(name)));
         let is_over = results[0].is_some();
         if is_over && results == self.results {
             return &self.status;
@@ -195,12 +195,12 @@ impl Watched {
 }
 
 /// Reads the results of a run whose evolution has ended.
-fn read_results(status: &mut RunStatus) -> Result<(), SingleError> {
+fn read_results(status: &mut RunStatus) -> Result<(), StudyRunError> {
     if let Some(outcome) = summary(&status.folder)? {
         status.generations = outcome.generations;
         status.converged = outcome.converged;
         status.best_steps = outcome.best.iter().map(|best| best.fitness).collect();
-        let fresh = fresh(&status.folder)?;
+        let fresh = evaluation(&status.folder)?;
         status.stage = fresh.as_ref().map_or(RunState::Evolved, |_| RunState::Done);
         status.fresh_steps = fresh.map(|fresh| fresh.evaluation.mean);
     }

@@ -1,6 +1,10 @@
 //! The properties of final structures that the claims of the thesis are about.
 
-use super::facts::Winner;
+use serde::Serialize;
+
+use crate::evolution::{RankedRecord, TreeError};
+use crate::hierarchy::{canonical, without_repeats};
+use crate::lab::AnyExperiment;
 
 /// Composite subtasks of the foraging task that serve capturing, and those that serve
 /// delivering.
@@ -9,7 +13,45 @@ const SIDES: [[&str; 3]; 2] = [
     ["Deliver", "FindNest", "VisibleNest"],
 ];
 
+/// The structure of the best individual of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Winner {
+    /// The hierarchy as text.
+    pub tree: String,
+    /// The hierarchy with children sorted and repeated primitive children left out.
+    pub structure: String,
+    /// Its composite subtasks, including the root.
+    pub composites: Vec<String>,
+    /// Its distinct primitive subtasks.
+    pub primitives: Vec<String>,
+    /// The primitive subtasks that can be selected, for each state type.
+    pub selectable: Vec<Vec<String>>,
+}
+
 impl Winner {
+    /// Reads the hierarchy of an individual.
+    ///
+    /// # Errors
+    /// When its text is not a hierarchy of the experiment.
+    pub(super) fn of(
+        record: &RankedRecord,
+        experiment: &dyn AnyExperiment,
+    ) -> Result<Self, TreeError> {
+        let catalogue = experiment.catalogue();
+        let tree = experiment.read_tree(&record.tree)?;
+        let composites = tree.nodes().iter().filter_map(|node| {
+            let subtask = catalogue.subtask(node.subtask);
+            subtask.is_composite().then(|| subtask.name.to_owned())
+        });
+        Ok(Self {
+            composites: composites.collect(),
+            structure: canonical(&without_repeats(&tree, catalogue), catalogue),
+            tree: record.tree.clone(),
+            primitives: record.primitives.clone(),
+            selectable: record.primitives_by_state_type.clone(),
+        })
+    }
+
     /// Returns whether every state type has exactly one selectable primitive subtask: the
     /// *minimal strategy* of S. Elfwing et al., *Evolutionary Development of Hierarchical
     /// Learning Structures*, IEEE Transactions on Evolutionary Computation 11 (2007).

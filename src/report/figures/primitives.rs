@@ -1,5 +1,5 @@
-//! Figure 4.3: what the primitive subtasks have learned, over the one reading that they
-//! look at.
+//! Figure 4.3: the action values of primitive subtasks against the one sensor reading that they
+//! depend on.
 
 use std::path::Path;
 
@@ -9,13 +9,14 @@ use crate::learning::PrimitiveValues;
 use crate::scenario::Scenario;
 use crate::worlds::{Kind, Probe};
 
-/// Points of a line.
+/// Number of points of a line.
 const POINTS: usize = 121;
 
-/// A chart for every primitive subtask that looks at a single reading.
+/// Returns a chart for every primitive subtask that depends on a single reading.
 ///
 /// # Errors
-/// When the scenario cannot be made ready.
+/// When the experiment of the scenario cannot be built; the inner error when the checkpoint
+/// cannot be used.
 pub(super) fn action_values(
     scenario: &Scenario,
     folder: &Path,
@@ -80,7 +81,7 @@ fn chart(experiment: &dyn AnyExperiment, primitive: &PrimitiveValues) -> Option<
     })
 }
 
-/// A reading as it stands at an axis; its name ends in its unit.
+/// Returns the axis label of a reading, whose name ends in its unit.
 fn with_unit(name: &str) -> String {
     match name.rsplit_once('_') {
         Some((what, unit)) => format!("{} ({unit})", what.replace('_', " ")),

@@ -12,10 +12,10 @@ use crate::lab::{
 };
 use crate::scenario::Scenario;
 
-/// Hierarchies in Figure 4.9.
+/// Number of hierarchies in Figure 4.9.
 const SELECTED_GENERATIONS: usize = 8;
 
-/// A run that is read from its folder.
+/// A run, read from its folder.
 #[derive(Clone, Debug)]
 pub struct RunSource {
     /// Its folder.
@@ -26,7 +26,7 @@ pub struct RunSource {
     pub seed: u64,
     /// Version and commit of the program that did it.
     pub version: String,
-    /// The command lines that did it.
+    /// The command lines that started and resumed it.
     pub commands: Vec<String>,
     /// Its generations.
     pub records: Vec<GenerationRecord>,
@@ -38,16 +38,16 @@ pub enum SourceError {
     /// The run cannot be read.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// Its scenario cannot be made ready.
+    /// The experiment of its scenario cannot be built.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// The run has no generation yet.
-    #[error("{folder}: no generation has lived yet; allowed: a run that has one")]
+    /// The run has no finished generation yet.
+    #[error("{folder}: found no finished generation; allowed: a run with at least one")]
     Empty {
         /// The folder.
         folder: String,
     },
-    /// A part of the run is not what it should be.
+    /// A part of the run cannot be used.
     #[error("{folder}: {message}")]
     Misfit {
         /// The folder.
@@ -61,7 +61,7 @@ impl RunSource {
     /// Reads the run in a folder.
     ///
     /// # Errors
-    /// When it holds no run, or none with a generation.
+    /// When it holds no run, or the run has no finished generation.
     pub fn read(folder: &Path) -> Result<Self, SourceError> {
         let recording = Recording::read(folder)?;
         let started = &recording.manifest.started;
@@ -80,23 +80,22 @@ impl RunSource {
                 })
                 .collect(),
         };
-        match source.records.is_empty() {
-            false => Ok(source),
-            true => Err(SourceError::Empty {
+        if source.records.is_empty() {
+            return Err(SourceError::Empty {
                 folder: folder.display().to_string(),
-            }),
+            });
         }
+        Ok(source)
     }
 
-    /// The command that makes something of the run, with these further arguments.
-    #[must_use]
-    pub fn command(&self, arguments: &str) -> String {
+    /// Returns the command that exports the run with these arguments.
+    fn command(&self, arguments: &str) -> String {
         let folder = shell_word(&self.folder.display().to_string());
         format!("maxq-lab export {folder} {arguments}")
     }
 
-    /// Where what is made of the run with these arguments of `export` comes from: the run,
-    /// what sets it apart from the embedded scenario of its name, and all commands.
+    /// Returns the provenance of an export of the run with these arguments: the run, its changes
+    /// of the embedded scenario with its name, and all commands.
     #[must_use]
     pub fn provenance(&self, arguments: &str) -> String {
         let generations = self.records.len();
@@ -111,10 +110,10 @@ impl RunSource {
         )
     }
 
-    /// A figure of the run, for this format of `export`.
+    /// Returns a figure of the run. `format` is that of the export, for the provenance.
     ///
     /// # Errors
-    /// When the run does not hold what the figure shows.
+    /// When the run does not hold what the figure needs.
     pub fn figure(&self, number: FigureNumber, format: &str) -> Result<Figure, SourceError> {
         let arguments = format!("--format {format} --figure {}", number.name());
         let (title, panels) = match number {
@@ -155,7 +154,7 @@ impl RunSource {
         self.records.len() - 1
     }
 
-    /// Generations from the first to the last, at about the same distance.
+    /// Returns the indices of evenly spaced generations, from the first to the last.
     fn selected(&self) -> Vec<usize> {
         let count = SELECTED_GENERATIONS.min(self.records.len());
         let at = |index: usize| index * self.last() / (count - 1).max(1);
@@ -206,7 +205,7 @@ impl RunSource {
     fn probabilities(&self) -> Vec<Panel> {
         let first = self.records.first();
         let of_types = first.map_or(&[][..], |record| &record.selection_probabilities);
-        // A primitive subtask looks the same in every state type in which it can be selected.
+        // A primitive subtask has the same mark in all charts.
         let names = of_types.iter().flatten().flat_map(|of_type| of_type.keys());
         let marks: BTreeSet<_> = names.collect();
         let marks: Vec<_> = marks.into_iter().collect();

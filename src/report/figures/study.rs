@@ -4,7 +4,7 @@
 use super::run::{RunSource, SourceError, sketches};
 use super::{Chart, Figure, FigureNumber, Panel, Series};
 use crate::report::arm::Base;
-use crate::report::facts::{Facts, Moment};
+use crate::report::facts::{Facts, GenerationFacts};
 use crate::report::provenance::Provenance;
 use crate::report::statistics::iqm;
 use crate::report::study::Study;
@@ -191,7 +191,7 @@ impl View<'_> {
 }
 
 /// Adds the course of interquartile means over runs, from the first generation to the last.
-fn add_course(chart: &mut Chart, runs: &[&Facts], name: String, of: fn(&Moment) -> f64) {
+fn add_course(chart: &mut Chart, runs: &[&Facts], name: String, of: fn(&GenerationFacts) -> f64) {
     let points = (0..POINTS).map(|point| {
         let share = point as f64 / (POINTS - 1) as f64;
         let values: Vec<_> = runs
