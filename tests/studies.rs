@@ -1,9 +1,8 @@
-//! A study is the same bytes however it is done: at once or broken off at any moment and
-//! gone on with, one run at a time or side by side, in any order; and every arm of it does
-//! what its name says.
+//! A study has the same bytes however it is done: without a break or interrupted at any moment
+//! and resumed, one run at a time or in parallel, in any order. Every arm does what its name says.
 //!
-//! Why it matters: claims rest on hundreds of runs that no machine does in one sitting. If
-//! a run depended on what was done before it, nobody could check the others' numbers.
+//! Why it matters: claims rest on hundreds of runs that no machine does in one session. If a run
+//! depended on what was done before it, nobody could check its numbers.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -54,16 +53,16 @@ fn do_all(study: &Study) {
         two(),
         Keep::None,
         &controls,
-        |happening| {
-            if let StudyEvent::Failed { error, .. } = happening {
+        |event| {
+            if let StudyEvent::Failed { error, .. } = event {
                 panic!("{error}");
             }
         },
     );
 }
 
-/// All files whose bytes follow from the plan alone.
-fn follows_from_the_plan(name: &str) -> bool {
+/// Returns whether the bytes of a file depend on the plan alone.
+fn depends_on_the_plan_alone(name: &str) -> bool {
     let names = [
         "study.json",
         "events.jsonl",
@@ -74,11 +73,11 @@ fn follows_from_the_plan(name: &str) -> bool {
 }
 
 fn assert_same(one: &Path, other: &Path) {
-    common::assert_same_files(one, other, follows_from_the_plan);
+    common::assert_same_files(one, other, depends_on_the_plan_alone);
 }
 
 #[test]
-fn broken_off_anywhere_and_in_any_order_it_is_the_same() {
+fn an_interrupted_study_and_one_in_another_order_have_the_same_bytes() {
     let parent = tempfile::tempdir().unwrap();
     let plan = plan(&[Base::Evolved, Base::RandomSearch, Base::HandDesigned]);
     let whole = Study::create(plan.clone(), &parent.path().join("whole")).unwrap();
@@ -105,7 +104,7 @@ fn broken_off_anywhere_and_in_any_order_it_is_the_same() {
     do_all(&broken);
     assert_same(&whole.folder, &broken.folder);
 
-    // The arms that need the length of the evolved run come before it here.
+    // Here the arms with a matched budget come before the evolved run.
     let reverse = Study::create(plan, &parent.path().join("reverse")).unwrap();
     let mut runs = reverse.runs();
     runs.reverse();
@@ -120,7 +119,7 @@ fn broken_off_anywhere_and_in_any_order_it_is_the_same() {
 }
 
 #[test]
-fn killed_and_started_twice_at_once_it_is_the_same() {
+fn a_study_that_is_killed_and_then_done_by_two_processes_has_the_same_bytes() {
     let parent = tempfile::tempdir().unwrap();
     let plan = plan(&[Base::Evolved, Base::RandomSelection]);
     let whole = Study::create(plan.clone(), &parent.path().join("whole")).unwrap();
@@ -171,7 +170,7 @@ fn every_arm_does_what_its_name_says() {
                 _ => None,
             })
             .collect();
-        // Individuals that were reproduced run half of the trials.
+        // Reproduced individuals have half of the trials.
         let individuals = records.iter().flat_map(|record| &record.individuals);
         let lived: usize = individuals
             .clone()
@@ -227,32 +226,32 @@ fn every_arm_does_what_its_name_says() {
 }
 
 #[test]
-fn a_look_reads_what_has_changed_and_nothing_else() {
+fn a_look_reads_only_what_has_changed() {
     let parent = tempfile::tempdir().unwrap();
     let study = Study::create(plan(&[Base::Evolved]), parent.path()).unwrap();
     let [run, other] = study.runs()[..] else {
         panic!("two seeds")
     };
     let mut watch = StatusWatch::of(&study);
-    let mut stages = || {
+    let mut states = || {
         let looked = watch.look();
         looked.iter().map(|status| status.stage).collect::<Vec<_>>()
     };
-    assert_eq!(stages(), [RunState::Waiting, RunState::Waiting]);
+    assert_eq!(states(), [RunState::Waiting, RunState::Waiting]);
     do_all(&study);
-    assert_eq!(stages(), [RunState::Done, RunState::Done]);
+    assert_eq!(states(), [RunState::Done, RunState::Done]);
 
-    // Damaged so that it looks the same from outside: who read it would find it unreadable.
+    // The damaged file has the old size and time, so only reading it would show the damage.
     let file = study.run_folder(&run).join("evaluation.json");
     let before = fs::metadata(&file).unwrap();
     fs::write(&file, " ".repeat(before.len().try_into().unwrap())).unwrap();
     let opened = fs::File::options().write(true).open(&file).unwrap();
     opened.set_modified(before.modified().unwrap()).unwrap();
-    assert_eq!(stages(), [RunState::Done, RunState::Done]);
+    assert_eq!(states(), [RunState::Done, RunState::Done]);
     assert_eq!(status(&study)[0].stage, RunState::Unreadable);
     fs::remove_file(&file).unwrap();
 
-    // A run that is not over is followed from where it was.
+    // A run whose evolution has not ended is followed from where it was.
     let folder = study.run_folder(&other);
     for result in ["summary.json", "evaluation.json"] {
         fs::remove_file(folder.join(result)).unwrap();
@@ -312,8 +311,8 @@ fn a_study_takes_no_folder_of_another_plan_and_no_run_of_another_study() {
         two(),
         Keep::None,
         &StudyControls::default(),
-        |happening| {
-            if let StudyEvent::Failed { error, .. } = happening {
+        |event| {
+            if let StudyEvent::Failed { error, .. } = event {
                 failures.lock().unwrap().push(error.to_string());
             }
         },
@@ -321,7 +320,7 @@ fn a_study_takes_no_folder_of_another_plan_and_no_run_of_another_study() {
     assert!(failed[0].contains("holds another run"), "{failed:?}");
 }
 
-/// An evaluation made by another protocol, or of another tree, is not what the plan asks for.
+/// An evaluation with another protocol, or of another hierarchy, is not the one of the plan.
 #[test]
 fn an_evaluation_of_another_plan_is_refused_until_it_is_removed() {
     let parent = tempfile::tempdir().unwrap();
@@ -362,7 +361,7 @@ fn an_evaluation_of_another_plan_is_refused_until_it_is_removed() {
 }
 
 #[test]
-fn the_command_does_a_plan_and_errors_say_what_is_allowed() {
+fn the_command_does_a_plan_and_its_errors_say_what_is_allowed() {
     let parent = tempfile::tempdir().unwrap();
     let file = parent.path().join("plan.json");
     let settings: Vec<_> = SHORT.iter().map(|setting| format!("{setting:?}")).collect();

@@ -1,12 +1,12 @@
-//! A study that other engines spread over processes and machines is the study that one
-//! process does, byte for byte: GNU parallel on the lines of `study commands`, Slurm on the
-//! script of `study slurm`, and parts put together by `study merge`, in any order; a task
-//! that is preempted goes on where it was.
+//! A study that is spread over processes and machines equals, byte for byte, the study that one
+//! process does: with GNU parallel on the lines of `study commands`, with Slurm on the script of
+//! `study slurm`, and with `study merge` on parts in any order. A preempted task resumes where it
+//! was.
 //!
-//! Why it matters: hundreds of runs are done where there are many processors, and what comes
-//! back must not depend on which of them did what. The real programs are used, because
-//! their quoting, signals and requeueing are what breaks. `.ci/run` installs them; where
-//! they are missing these tests say so and pass.
+//! Why it matters: hundreds of runs are done where there are many processors, and the result must
+//! not depend on which of them did what. These tests use the real programs, because quoting,
+//! signals and requeueing are what breaks. `.ci/run` installs the programs; if they are missing,
+//! the tests say so and pass.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -25,17 +25,18 @@ use common::{SHORT, output, program, stderr, stdout};
 /// Many trials a generation.
 const LONG: [&str; 1] = ["evolution.trials_per_generation=400"];
 
-/// A plan of six short runs; or, if `long`, of two whose generations take some tenths of a
-/// second on a fast machine, so that a signal after the first finds them at work.
+/// Writes a plan of six short runs or, if `long`, of two runs whose generations take some tenths of
+/// a second on a fast machine, so that a signal after the first generation interrupts them.
 fn plan_in(folder: &Path, long: bool) -> PathBuf {
     let settings = if long { &LONG[..] } else { SHORT };
     let quoted: Vec<_> = settings.iter().map(|set| format!("{set:?}")).collect();
     let settings = quoted.join(",");
     let arm =
         |base: &str| format!(r#"{{"name":"{base}","base":"{base}","settings":[{settings}]}}"#);
-    let arms = match long {
-        true => arm("random_selection"),
-        false => [arm("evolved"), arm("random_search"), arm("flat")].join(","),
+    let arms = if long {
+        arm("random_selection")
+    } else {
+        [arm("evolved"), arm("random_search"), arm("flat")].join(",")
     };
     let plan = format!(
         r#"{{"format":1,"name":"parts","scenarios":["smoke"],"seeds":"1..2","arms":[{arms}],
@@ -63,18 +64,18 @@ fn succeeds(command: &mut Command) -> String {
     stdout(&done)
 }
 
-/// Everything in a study but what says where and when: `run.json`, `summary.json`, and
-/// locks.
-fn follows_from_the_plan(name: &str) -> bool {
+/// Returns whether a file depends on the plan alone. `run.json`, `summary.json` and locks say where
+/// and when a run was done.
+fn depends_on_the_plan_alone(name: &str) -> bool {
     !["run.json", "summary.json", "lock"].contains(&name)
 }
 
 fn assert_same(one: &Path, other: &Path) {
-    common::assert_same_files(one, other, follows_from_the_plan);
+    common::assert_same_files(one, other, depends_on_the_plan_alone);
 }
 
-/// Says something although the test passes, when `eprintln` would be kept back.
-fn say(words: &str) {
+/// Writes a line even if the test passes; the output of `eprintln` would be hidden.
+fn announce(words: &str) {
     std::io::stderr()
         .write_all(format!("{words}\n").as_bytes())
         .unwrap();
@@ -86,13 +87,13 @@ fn missing(programs: &[&str]) -> bool {
         |name: &&str| std::env::split_paths(&path).any(|folder| folder.join(name).is_file());
     let missing: Vec<_> = programs.iter().filter(|name| !found(name)).collect();
     if !missing.is_empty() {
-        say(&format!("skipped: not installed: {missing:?}"));
+        announce(&format!("skipped: not installed: {missing:?}"));
     }
     !missing.is_empty()
 }
 
 #[test]
-fn parts_are_put_together_in_any_order() {
+fn parts_are_merged_in_any_order() {
     let parent = tempfile::tempdir().unwrap();
     let plan = plan_in(parent.path(), false);
     let at = |name: &str| parent.path().join(name);
@@ -117,11 +118,11 @@ fn parts_are_put_together_in_any_order() {
     }
     assert_same(&at("whole"), &at("one"));
     assert_same(&at("one"), &at("other"));
-    // Who did a run is told the same, whatever the order.
-    let told = |out: &str| fs::read(at(out).join("smoke/evolved/seed-1/run.json")).unwrap();
-    assert_eq!(told("one"), told("other"));
+    // The copied `run.json` is the same, whatever the order.
+    let origin = |out: &str| fs::read(at(out).join("smoke/evolved/seed-1/run.json")).unwrap();
+    assert_eq!(origin("one"), origin("other"));
 
-    // A part may be the whole; a run that differs is refused.
+    // The merged study may be one of the parts; a run that differs is refused.
     succeeds(
         program()
             .args(["study", "merge"])
@@ -157,7 +158,7 @@ fn gnu_parallel_does_the_lines_of_the_plan() {
     }
     let parent = tempfile::tempdir().unwrap();
     let plan = plan_in(parent.path(), false);
-    // A name that the shell would take apart.
+    // The shell would split this name.
     let out = parent.path().join("the study's");
     succeeds(&mut study(&plan, &parent.path().join("whole")));
     let binary = env!("CARGO_BIN_EXE_maxq-lab");
@@ -196,7 +197,7 @@ fn gnu_parallel_does_the_lines_of_the_plan() {
     assert_same(&parent.path().join("whole"), &out);
 }
 
-/// A Slurm of one node on this machine, its files in a folder of its own.
+/// A Slurm cluster of one node on this machine, with its files in a folder.
 struct Slurm {
     folder: PathBuf,
     daemons: Vec<Child>,
@@ -239,7 +240,7 @@ impl Slurm {
     }
 
     fn configuration(&self) -> String {
-        // Two ports that nobody uses at the moment.
+        // Two ports that are free at the moment.
         let listeners = [0, 0].map(|_| TcpListener::bind("127.0.0.1:0").unwrap());
         let [controller, node] = listeners.map(|listener| listener.local_addr().unwrap().port());
         let host = rustix::system::uname()
@@ -329,13 +330,13 @@ fn wait(what: &str, mut holds: impl FnMut() -> bool) {
 }
 
 #[test]
-fn slurm_does_the_array_and_goes_on_after_preemption() {
+fn slurm_does_the_array_and_resumes_after_preemption() {
     if missing(&["munged", "slurmctld", "slurmd", "sbatch"]) {
         return;
     }
     let root = fs::metadata("/proc/self").map(|data| std::os::unix::fs::MetadataExt::uid(&data));
     if root.unwrap_or(1) != 0 {
-        say("skipped: a Slurm can be started by root alone");
+        announce("skipped: only root can start a Slurm cluster");
         return;
     }
     let parent = tempfile::tempdir().unwrap();
@@ -363,7 +364,7 @@ fn slurm_does_the_array_and_goes_on_after_preemption() {
     );
     let queue = || slurm.says("squeue", &["-h", "-o", "%T %i"]);
     wait("the end of the job", || {
-        // Slurm lets a requeued task wait for a while; the test need not.
+        // Slurm delays a requeued task; the test need not wait for it.
         for line in queue().lines().filter(|line| line.starts_with("PENDING")) {
             let id = line.split(' ').next_back().unwrap_or_default();
             slurm.says(
@@ -380,6 +381,6 @@ fn slurm_does_the_array_and_goes_on_after_preemption() {
     assert_eq!(
         manifest["resumed"].as_array().unwrap().len(),
         1,
-        "it was gone on with"
+        "the run was resumed"
     );
 }

@@ -1,11 +1,11 @@
-//! A plan is refused with its file, the place in it, what was found there and what is
-//! allowed; the schema that editors use takes what the program takes and refuses what can be
-//! told without running it.
+//! A broken plan is refused with its file, the place in it, the value found there and the values
+//! allowed. The schema for editors accepts what the program accepts, and refuses what a schema can
+//! recognise as wrong.
 //!
-//! Why it matters: a study runs for hours. What is wrong with its plan must be found before it
-//! begins, and be mended without reading the source.
+//! Why it matters: a study runs for hours. Mistakes in its plan must be found before it starts, and
+//! be corrected without reading the source.
 //!
-//! The fixtures in `tests/fixtures/plans` are `valid.json` with one thing changed each.
+//! Each fixture in `tests/fixtures/plans` is `valid.json` with one change.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -20,7 +20,7 @@ use maxq_lab::report::{Plan, Study};
 use maxq_lab::scenario::EMBEDDED_PLANS;
 use serde_json::Value;
 
-/// Fixture, where it is broken, what is said of it, and whether the schema refuses it too.
+/// Fixture, place of the mistake, part of the message, and whether the schema refuses it too.
 const BROKEN: &[(&str, &str, &str, bool)] = &[
     ("unknown-format", "at format", "found 2; allowed: 1", true),
     (
@@ -152,7 +152,7 @@ fn schema() -> jsonschema::Validator {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_file_place_and_what_is_allowed() {
+fn errors_name_the_file_the_place_and_what_is_allowed() {
     let schema = schema();
     for (name, place, said, refused_by_schema) in BROKEN {
         let file = fixture(name);
@@ -192,7 +192,7 @@ fn what_is_wrong_is_said_with_file_place_and_what_is_allowed() {
 }
 
 #[test]
-fn what_is_not_there_or_cannot_be_read_is_said() {
+fn missing_and_unreadable_plans_are_reported() {
     let parent = tempfile::tempdir().unwrap();
     let error = Plan::load("nosuch").unwrap_err().to_string();
     let names: Vec<_> = EMBEDDED_PLANS.iter().map(|plan| plan.name).collect();
@@ -212,7 +212,7 @@ fn what_is_not_there_or_cannot_be_read_is_said() {
 }
 
 #[test]
-fn shipped_plans_and_the_plans_of_studies_satisfy_the_schema() {
+fn embedded_plans_and_the_plans_of_studies_satisfy_the_schema() {
     let schema = schema();
     let assert_valid = |json: &str, name: &str| {
         let json: Value = serde_json::from_str(json).unwrap();
@@ -229,10 +229,10 @@ fn shipped_plans_and_the_plans_of_studies_satisfy_the_schema() {
     }
 }
 
-/// A study's folder stands for its plan: it is gone on with by its name alone, even where an
-/// embedded plan has that name.
+/// The folder of a study stands for its plan: the study is resumed by the name of its folder alone,
+/// even if an embedded plan has that name.
 #[test]
-fn a_study_s_folder_is_a_plan() {
+fn the_folder_of_a_study_is_a_plan() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("thesis");
     let plan = Plan::load(fixture("valid").to_str().unwrap()).unwrap();
@@ -275,16 +275,13 @@ fn a_study_s_folder_is_a_plan() {
 }
 
 #[test]
-fn what_is_neither_plan_nor_study_nor_scenario_is_told_what_there_is() {
+fn a_name_that_is_no_plan_study_or_scenario_is_answered_with_what_exists() {
     let parent = tempfile::tempdir().unwrap();
     fs::create_dir(parent.path().join("empty")).unwrap();
     let no_arms = r#"{"format":1,"name":"mine","scenarios":["smoke"],"seeds":"1"}"#;
     fs::write(parent.path().join("no-arms.json"), no_arms).unwrap();
     for (arguments, expected) in [
-        (
-            &["evolving-taksi"][..],
-            "a built-in plan (evolving-taxi, ",
-        ),
+        (&["evolving-taksi"][..], "a built-in plan (evolving-taxi, "),
         (
             &["empty"],
             "empty: holds no study.json; allowed: the folder of",
@@ -307,7 +304,7 @@ fn what_is_neither_plan_nor_study_nor_scenario_is_told_what_there_is() {
         assert!(said.contains(expected), "{said}");
         assert!(
             !parent.path().join("out").exists(),
-            "made for {arguments:?}"
+            "created for {arguments:?}"
         );
     }
 }

@@ -1,9 +1,8 @@
-//! A report says what the runs show, no more: an effect that is there is found, one that
-//! is not is called drift or undecided, every number comes with its n, every table is one
-//! that pandas and R read as it is, every figure says what made it, and the same runs give
-//! the same bytes.
+//! A report states what the runs show and no more. An effect that exists is found; one that does
+//! not exist is attributed to drift or left undecided. Every number has its n, every table is plain
+//! CSV, every table and figure says what it was made from, and the same runs give the same bytes.
 //!
-//! Why it matters: people will quote these verdicts without looking at the runs.
+//! Why it matters: people quote these verdicts without looking at the runs.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -22,7 +21,7 @@ use maxq_lab::report::{
 
 const SEEDS: u64 = 30;
 
-/// A study of the thesis's environments whose runs are made up.
+/// Creates a study of the thesis's environments, whose runs are invented.
 fn study(folder: &Path) -> Study {
     let scenarios = ["environment-1", "environment-2", "environment-3"].map(str::to_owned);
     let arms = [Base::Evolved, Base::RandomSelection, Base::HandDesigned].map(Arm::of);
@@ -30,7 +29,7 @@ fn study(folder: &Path) -> Study {
     Study::create(plan, folder).unwrap()
 }
 
-/// A made-up run: minimal or not, with a fresh trial length.
+/// Invents a run, whose winner is minimal or not and has a given trial length on fresh trials.
 fn facts(
     study: &Study,
     scenario: usize,
@@ -50,9 +49,10 @@ fn facts(
             .map(|&name| name.to_owned())
             .collect::<Vec<_>>()
     };
-    let second = match minimal {
-        true => names(&["ApproachBattery"]),
-        false => names(&["ApproachBattery", "Wander"]),
+    let second = if minimal {
+        names(&["ApproachBattery"])
+    } else {
+        names(&["ApproachBattery", "Wander"])
     };
     let moment = |best: f64, difference: f64| GenerationFacts {
         best_steps: best,
@@ -87,8 +87,8 @@ fn facts(
     }
 }
 
-/// Runs of all seeds in every scenario: those of an arm that are minimal, and how long
-/// their winners take.
+/// Invents the runs of all seeds, scenarios and arms. For each arm, `minimal` is the number of
+/// minimal winners and `steps` their shortest trial length.
 fn all(study: &Study, minimal: [u64; 3], steps: [f64; 3]) -> Vec<Facts> {
     let mut all = Vec::new();
     for seed in 1..=SEEDS {
@@ -115,7 +115,7 @@ fn judged<'f>(findings: &'f Findings, claim: &str, scenario: &str) -> &'f Judged
 }
 
 #[test]
-fn claims_are_held_against_the_control() {
+fn claims_are_tested_against_the_control() {
     let parent = tempfile::tempdir().unwrap();
     let study = study(parent.path());
     for (evolved, control, verdict) in [
@@ -138,7 +138,7 @@ fn a_claim_on_two_environments_is_paired_by_seed_and_needs_both() {
     let parent = tempfile::tempdir().unwrap();
     let study = study(parent.path());
     let mut all = all(&study, [SEEDS, SEEDS, 0], [100.0; 3]);
-    // Environment 3 has more primitives in 29 seeds, and under the control in 2.
+    // Environment 3 has more primitives in 29 seeds of the tested arm and in 2 of the control.
     for facts in &mut all {
         let grows = match facts.run.arm {
             0 => facts.run.seed > 1,
@@ -153,17 +153,17 @@ fn a_claim_on_two_environments_is_paired_by_seed_and_needs_both() {
     assert_eq!((found.tested.shown, found.control.unwrap().shown), (29, 2));
     assert_eq!(found.verdict, Some(Verdict::Holds));
 
-    // A seed without its environment 3 cannot tell.
+    // A seed without environment 3 does not count.
     all.retain(|facts| facts.run.scenario != 2 || facts.run.seed > 10);
     let findings = Findings::from_facts(&study, &all);
     let found = judged(&findings, "primitives-grow", "environment-1, environment-3");
     assert_eq!(found.tested.n, 20);
 }
 
-/// Without selection a seed leads to the same structures in every environment: held against
-/// each other these would never differ, and any difference would look like selection's work.
+/// Without selection, a seed leads to the same structures in every environment. A comparison within
+/// one seed would never find a difference, and any difference under selection would look real.
 #[test]
-fn claims_across_environments_hold_different_seeds_of_the_control_against_each_other() {
+fn claims_across_environments_compare_different_seeds_of_the_control() {
     let parent = tempfile::tempdir().unwrap();
     let study = study(parent.path());
     let mut all = all(&study, [SEEDS, SEEDS, 0], [100.0; 3]);
@@ -174,7 +174,7 @@ fn claims_across_environments_hold_different_seeds_of_the_control_against_each_o
     }
     let findings = Findings::from_facts(&study, &all);
     let found = judged(&findings, "primitives-grow", "environment-1, environment-3");
-    // Environment 1 of seeds 29 and 30 stands against environment 3 of seeds 1 and 2.
+    // Environment 1 of seeds 29 and 30 is compared with environment 3 of seeds 1 and 2.
     assert_eq!((found.control.unwrap().shown, found.tested.shown), (2, 0));
 }
 
@@ -189,7 +189,7 @@ fn arms_are_compared_by_fresh_trials_paired_by_seed() {
     };
     let control = of("environment-2", "random_selection");
     let mean = control.difference_mean.unwrap();
-    // The seeds differ by up to 29 steps, the pairs by exactly 50.
+    // Seeds differ by up to 29 steps, but all pairs by exactly 50.
     assert_eq!((mean.n, mean.value), (30, -50.0));
     let interval = mean.interval.unwrap();
     assert_eq!((interval.low, interval.high), (-50.0, -50.0));
@@ -223,7 +223,7 @@ fn a_single_seed_has_no_interval_and_decides_nothing() {
             .all(|claim| claim.verdict == Some(Verdict::Undecided))
     );
     assert_eq!((findings.provenance.runs, findings.provenance.of), (9, 270));
-    // Before any run is done there is no version that did one.
+    // Before any run is done, the provenance names no version.
     let nothing = Findings::from_facts(&study, &[]).provenance.line();
     let (before, command) = nothing.split_once("; ").unwrap();
     assert!(before.ends_with("0 of 270 runs, seeds 1..30"), "{nothing}");
@@ -334,7 +334,7 @@ fn the_report_of_real_runs_repeats_and_reads_as_tables() {
     assert_eq!(json["kinds"][0]["n"], 3);
 }
 
-/// The words of a picture, whatever lines they stand in.
+/// Returns the words of an SVG image, whatever lines they are in.
 fn words(svg: &str) -> String {
     let texts = svg.split('<').filter_map(|part| part.split_once('>'));
     let words: Vec<_> = texts
@@ -344,7 +344,7 @@ fn words(svg: &str) -> String {
 }
 
 #[test]
-fn every_figure_of_a_run_is_drawn_and_says_what_made_it() {
+fn every_figure_of_a_run_is_drawn_with_its_provenance() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("run");
     common::run_in(&folder, &short(&[]), 7, &threads(1));
@@ -379,7 +379,7 @@ fn every_figure_of_a_run_is_drawn_and_says_what_made_it() {
     let values = source.figure(FigureNumber::F4_3, "svg").unwrap();
     assert_eq!(values.panels.len(), 3);
     assert!(values.svg().unwrap().contains("angle (deg)"));
-    // Probabilities can be compared from panel to panel: one scale, one look for each subtask.
+    // Probabilities are comparable between panels: one scale, and one mark for each subtask.
     let mut marks = std::collections::BTreeMap::new();
     for panel in source.figure(FigureNumber::F4_10, "svg").unwrap().panels {
         let Panel::Chart(chart) = panel else {

@@ -87,7 +87,7 @@ fn of_run(args: &Args) -> Result<String, Failure> {
     Ok(match args.format {
         ExportFormat::Csv => run_export::individuals(&run).csv(),
         ExportFormat::Json => run_export::json(&run)?,
-        ExportFormat::Markdown => run_export::markdown(&run)?,
+        ExportFormat::Markdown => run_export::markdown(&run),
         _ => run_export::dot(&run)?,
     })
 }

@@ -81,7 +81,7 @@ impl Default for Reevaluation {
 
 impl Plan {
     /// Loads the plan `name`: the file of that name, or the plan of the study in the folder of
-    /// that name, or else the embedded plan of that name.
+    /// that name, or else the built-in plan of that name.
     ///
     /// # Errors
     /// When there is none, or it cannot be carried out.
@@ -103,7 +103,7 @@ impl Plan {
         Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
     }
 
-    /// Returns whether `name` means a plan rather than a scenario: an embedded plan, the folder of
+    /// Returns whether `name` means a plan rather than a scenario: a built-in plan, the folder of
     /// a study, or a JSON file with arms or scenarios. A file that is not JSON counts if it
     /// mentions them.
     #[must_use]
@@ -314,7 +314,7 @@ struct PlanFile {
 #[serde(untagged)]
 #[expect(dead_code, reason = "describes what is parsed by hand")]
 enum ScenarioEntry {
-    /// The name of an embedded scenario or of a file, which is looked for in the plan's folder
+    /// The name of a built-in scenario or of a file, which is looked for in the plan's folder
     /// first.
     Name(String),
     /// A whole scenario.

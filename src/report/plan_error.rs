@@ -9,7 +9,7 @@ use crate::scenario::{EMBEDDED_PLANS, ScenarioError, names};
 /// Why a plan cannot be used.
 #[derive(Debug, Error)]
 pub enum PlanError {
-    /// Neither a file nor an built-in plan has this name.
+    /// Neither a file nor a built-in plan has this name.
     #[error(
         "no plan {name:?}: there is no such file, and the built-in plans are {}",
         names(EMBEDDED_PLANS)

@@ -1,10 +1,8 @@
 //! Exports a run as tables and text.
 
-use std::fmt::Write;
-
 use serde::Serialize;
 
-use super::figures::{RunSource, SourceError};
+use super::figures::RunSource;
 use super::table::{Table, short};
 use crate::evolution::{GenerationRecord, Origin};
 use crate::hierarchy::to_dot;
@@ -98,10 +96,8 @@ pub fn json(run: &RunSource) -> Result<String, serde_json::Error> {
 }
 
 /// Returns a summary of the run as Markdown.
-///
-/// # Errors
-/// When the run has no best hierarchy.
-pub fn markdown(run: &RunSource) -> Result<String, SourceError> {
+#[must_use]
+pub fn markdown(run: &RunSource) -> String {
     let mut table = Table::new(&[
         "generation",
         "best (time steps a trial)",
@@ -124,17 +120,15 @@ pub fn markdown(run: &RunSource) -> Result<String, SourceError> {
             best.map_or_else(String::new, |best| format!("`{}`", best.tree)),
         ]);
     }
-    let mut text = format!("# {}, seed {}\n\n", run.scenario.name, run.seed);
-    // Writing to a string cannot fail.
+    let heading = format!("# {}, seed {}\n\n", run.scenario.name, run.seed);
     let provenance = run.provenance("--format markdown");
-    let _ = writeln!(text, "{provenance}.\n\n{}", table.markdown());
-    Ok(text)
+    format!("{heading}{provenance}.\n\n{}\n", table.markdown())
 }
 
 /// Returns the best hierarchy of the last generation as DOT, for Graphviz.
 ///
 /// # Errors
-/// When the scenario cannot be made ready.
+/// When the experiment of the scenario cannot be built.
 pub fn dot(run: &RunSource) -> Result<String, SetupError> {
     let best = run
         .records
@@ -145,10 +139,10 @@ pub fn dot(run: &RunSource) -> Result<String, SetupError> {
     Ok(format!("// {}\n{dot}", run.provenance("--format dot")))
 }
 
-/// A hierarchy as DOT; nothing where it is none.
+/// Returns a hierarchy as DOT; nothing if the text is not a hierarchy.
 ///
 /// # Errors
-/// When the scenario cannot be made ready.
+/// When the experiment of the scenario cannot be built.
 pub(super) fn tree_dot(scenario: &Scenario, tree: &str) -> Result<String, SetupError> {
     let experiment = experiment(scenario.clone(), 0)?;
     let tree = experiment.read_tree(tree);

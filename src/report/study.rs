@@ -173,7 +173,9 @@ impl Study {
         if found.is_empty() {
             return Err(StudyError::NoSuchRun {
                 found: name.to_owned(),
-                allowed: format!("1 to {last}, or SCENARIO/ARM/seed-N as 'study commands' lists them"),
+                allowed: format!(
+                    "1 to {last}, or SCENARIO/ARM/seed-N as 'study commands' lists them"
+                ),
             });
         }
         Ok(found)

@@ -11,7 +11,7 @@ use super::findings::Findings;
 use super::provenance::Provenance;
 use super::results::StudyRunError;
 use super::run_export::tree_dot;
-use super::study::{Study, StudyError};
+use super::study::Study;
 use super::study_tables::{
     claims_table, comparisons_table, generations_table, metrics_table, runs_table,
 };
@@ -38,7 +38,7 @@ pub enum ReportError {
     Run(#[from] StudyRunError),
     /// A file cannot be written.
     #[error(transparent)]
-    Study(#[from] StudyError),
+    File(#[from] FileError),
     /// A figure cannot be made.
     #[error(transparent)]
     Source(#[from] SourceError),
@@ -68,23 +68,21 @@ pub fn write_report(study: &Study) -> Result<WrittenReport, ReportError> {
     let all = read_facts(study)?;
     let findings = Findings::from_facts(study, &all);
     let text = document::markdown(&findings);
-    let mut json = serde_json::to_vec_pretty(&findings).unwrap_or_default();
-    json.push(b'\n');
+    let json = serde_json::to_string_pretty(&findings).unwrap_or_default() + "\n";
+    let provenance = &findings.provenance;
+    let generations = generations_table(study, &all, provenance);
     let tables = [
-        ("runs.csv", runs_table(study, &all, &findings.provenance)),
-        (
-            "generations.csv",
-            generations_table(study, &all, &findings.provenance),
-        ),
+        ("runs.csv", runs_table(study, &all, provenance)),
+        ("generations.csv", generations),
         ("metrics.csv", metrics_table(&findings)),
         ("comparisons.csv", comparisons_table(&findings)),
         ("claims.csv", claims_table(&findings)),
     ];
     let mut contents = vec![
-        (String::from("report.md"), text.clone().into_bytes()),
+        (String::from("report.md"), text.clone()),
         (String::from("report.json"), json),
     ];
-    contents.extend(tables.map(|(name, table)| (name.to_owned(), table.csv().into_bytes())));
+    contents.extend(tables.map(|(name, table)| (name.to_owned(), table.csv())));
     for number in FigureNumber::ALL.into_iter().filter(|_| !all.is_empty()) {
         let figure = study_figure(study, &all, number)?;
         if figure.panels.is_empty() {
@@ -93,14 +91,13 @@ pub fn write_report(study: &Study) -> Result<WrittenReport, ReportError> {
             continue;
         }
         let name = number.name();
-        contents.push((format!("figure-{name}.svg"), figure.svg()?.into_bytes()));
-        let csv = figure.table().csv().into_bytes();
-        contents.push((format!("figure-{name}.csv"), csv));
+        contents.push((format!("figure-{name}.svg"), figure.svg()?));
+        contents.push((format!("figure-{name}.csv"), figure.table().csv()));
     }
     let folder = study.folder.join("report");
     let files = contents
         .iter()
-        .map(|(name, bytes)| write(&folder, name, bytes));
+        .map(|(name, text)| write(&folder, name, text));
     let files = files.collect::<Result<_, _>>()?;
     Ok(WrittenReport {
         findings,
@@ -109,9 +106,10 @@ pub fn write_report(study: &Study) -> Result<WrittenReport, ReportError> {
     })
 }
 
-fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, StudyError> {
+fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, FileError> {
     let path = folder.join(name);
-    let written = fs::create_dir_all(folder).and_then(|()| write_atomically(&path, bytes));
+    let written =
+        fs::create_dir_all(folder).and_then(|()| write_atomically(&path, text.as_bytes()));
     written.map_err(|error| FileError::new(&path, error))?;
     Ok(path)
 }

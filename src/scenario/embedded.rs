@@ -19,15 +19,15 @@ macro_rules! embedded {
     };
 }
 
-/// All embedded scenarios: the files of `scenarios/`.
+/// All built-in scenarios: the files of `scenarios/`.
 pub const EMBEDDED: &[Embedded] = embedded!["scenarios": "cliff", "environment-1", "environment-2", "environment-3", "four-rooms", "smoke", "taxi", "taxi-fickle"];
 
-/// All embedded plans of studies: the files of `scenarios/studies/`. They use embedded
+/// All built-in plans of studies: the files of `scenarios/studies/`. They use embedded
 /// scenarios only.
 pub const EMBEDDED_PLANS: &[Embedded] =
     embedded!["scenarios/studies": "evolving-taxi", "mutation", "thesis"];
 
-/// Returns the names of embedded scenarios or plans, for messages.
+/// Returns the names of built-in scenarios or plans, for messages.
 #[must_use]
 pub fn names(embedded: &[Embedded]) -> String {
     let names: Vec<_> = embedded.iter().map(|embedded| embedded.name).collect();

@@ -25,7 +25,7 @@ pub use settings::{
 /// The version of the scenario format that this program reads.
 pub const FORMAT: u32 = 1;
 
-/// Largest scenario file that is read, in bytes. The embedded ones are a hundred times smaller.
+/// Largest scenario file that is read, in bytes. The built-in ones are a hundred times smaller.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
 
 /// One experiment: a world, how agents learn in it, and how their hierarchies evolve.
@@ -50,7 +50,7 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Loads the file `name` if it exists, and else the embedded scenario of that name.
+    /// Loads the file `name` if it exists, and else the built-in scenario of that name.
     ///
     /// # Errors
     /// When neither exists, or the file cannot be read, is too large, is not a scenario, or
@@ -135,7 +135,7 @@ impl Scenario {
 /// Why a scenario cannot be used.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
-    /// Neither a file nor an embedded scenario has this name.
+    /// Neither a file nor a built-in scenario has this name.
     #[error(
         "no scenario {name:?}: there is no such file, and the built-in scenarios are {}",
         embedded::names(EMBEDDED)

@@ -38,7 +38,7 @@ pub struct LearningSettings {
     pub pseudo_penalty: f64,
     /// How a composite subtask chooses among its children.
     pub composite_choice: CompositeChoice,
-    /// Whether primitive subtasks go on learning during evolution, and who shares them.
+    /// Whether and how primitive subtasks learn during evolution.
     pub primitive_learning: PrimitiveLearning,
 }
 
@@ -109,7 +109,7 @@ pub enum CompositeChoice {
     Random,
 }
 
-/// Whether the primitive subtasks go on learning during evolution.
+/// Whether and how the primitive subtasks learn during evolution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PrimitiveLearning {
@@ -212,7 +212,7 @@ pub enum Variation {
     #[default]
     Crossover,
     /// At random: random search with as many trials in a generation as evolution. The best
-    /// are reproduced and every other hierarchy is drawn anew. The first generation is drawn
+    /// are reproduced and every other hierarchy is drawn again. The first generation is drawn
     /// too, and `initial_population` is not used. Only the generation limit ends the run.
     RandomTrees,
     /// Not at all: every individual keeps its hierarchy and goes on learning until the

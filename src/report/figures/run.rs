@@ -95,7 +95,7 @@ impl RunSource {
     }
 
     /// Returns the provenance of an export of the run with these arguments: the run, its changes
-    /// of the embedded scenario with its name, and all commands.
+    /// of the built-in scenario with its name, and all commands.
     #[must_use]
     pub fn provenance(&self, arguments: &str) -> String {
         let generations = self.records.len();
@@ -267,10 +267,11 @@ impl RunSource {
     }
 }
 
-/// Lays hierarchies out, given as captions and texts.
+/// Lays out hierarchies, given as captions and texts.
 ///
 /// # Errors
-/// When the scenario cannot be made ready; within, when a text is no hierarchy.
+/// When the experiment of the scenario cannot be built; the inner error when a text is not a
+/// hierarchy.
 pub(super) fn sketches(
     scenario: &Scenario,
     trees: Vec<(String, String)>,

@@ -1,26 +1,24 @@
-//! The figures of a study: courses over all seeds, and a typical run where the thesis
-//! shows one.
+//! The figures of a study: means over all seeds, or a typical run where the thesis shows one.
 
 use super::run::{RunSource, SourceError, sketches};
 use super::{Chart, Figure, FigureNumber, Panel, Series};
-use crate::report::arm::Base;
-use crate::report::facts::{Facts, GenerationFacts};
+use crate::report::facts::{Facts, GenerationFacts, StudyRuns};
 use crate::report::provenance::Provenance;
 use crate::report::statistics::iqm;
 use crate::report::study::Study;
 
-/// What the lines of a chart over all seeds are.
-const LINES: &str = "; lines are interquartile means over seeds";
+/// Caption of charts over all seeds.
+const LINES: &str = "; each line is the interquartile mean over seeds";
 
-/// Points of a course from the first generation to the last.
+/// Number of points of a line from the first generation to the last.
 const POINTS: usize = 41;
 
-/// A figure of a study from the runs that are done, scenario by scenario.
+/// Returns a figure of the finished runs of a study, with panels for each scenario.
 ///
-/// Figures 4.7 and 4.8 show every arm that evolves: interquartile means over seeds, the
-/// runs laid over one another from their first to their last generation. Figure 4.5 shows
-/// the most frequent final structure. The others show a typical run of the arm that
-/// claims are tested on: that whose winner is the median on fresh trials.
+/// Figures 4.7 and 4.8 show every arm that evolves, as interquartile means over seeds from the
+/// first generation of each run to its last. Figure 4.5 shows the most frequent final structure of
+/// the tested arm. The other figures show the typical run of the tested arm: the run whose winner
+/// has the median trial length on fresh trials.
 ///
 /// # Errors
 /// When a run cannot be read.
@@ -29,7 +27,7 @@ pub fn study_figure(
     all: &[Facts],
     number: FigureNumber,
 ) -> Result<Figure, SourceError> {
-    let view = View { study, all };
+    let view = View(StudyRuns { study, all });
     let (title, panels, made_from) = match number {
         FigureNumber::F4_7 => (
             "Structural difference to the best",
@@ -53,11 +51,8 @@ pub fn study_figure(
                 FigureNumber::F4_9 => "The best hierarchy of selected generations",
                 _ => "Selection probabilities of the primitive subtasks",
             };
-            (
-                title,
-                panels,
-                format!("; typical runs: {}", runs.join(", ")),
-            )
+            let made_from = format!("; typical runs: {}", runs.join(", "));
+            (title, panels, made_from)
         }
     };
     let provenance = Provenance::of(study, all);
@@ -69,20 +64,12 @@ pub fn study_figure(
     })
 }
 
-struct View<'v> {
-    study: &'v Study,
-    all: &'v [Facts],
-}
+struct View<'v>(StudyRuns<'v>);
 
 impl View<'_> {
-    fn runs(&self, scenario: usize, arm: usize) -> Vec<&Facts> {
-        let of = |facts: &&Facts| (facts.run.scenario, facts.run.arm) == (scenario, arm);
-        self.all.iter().filter(of).collect()
-    }
-
-    /// Arms whose structures change from generation to generation by crossover.
+    /// Returns the arms with crossover: their indices and names.
     fn evolving(&self) -> impl Iterator<Item = (usize, &str)> {
-        let arms = self.study.plan.arms.iter().enumerate();
+        let arms = self.0.study.plan.arms.iter().enumerate();
         arms.filter(|(_, arm)| !arm.base.is_matched())
             .map(|(index, arm)| (index, arm.name.as_str()))
     }
@@ -101,17 +88,17 @@ impl View<'_> {
     }
 
     fn charts(&self, y: &str, add: impl Fn(&mut Chart, &[&Facts], &str)) -> Vec<Panel> {
-        let scenarios = self.study.plan.scenarios.iter().enumerate();
-        let charts = scenarios.map(|(scenario, model)| {
+        let scenarios = self.0.study.plan.scenarios.iter().enumerate();
+        let charts = scenarios.map(|(index, scenario)| {
             let mut chart = Chart {
-                title: model.name.clone(),
+                title: scenario.name.clone(),
                 x: String::from("generations (%)"),
                 y: y.to_owned(),
                 y_range: None,
                 series: Vec::new(),
             };
             for (arm, name) in self.evolving() {
-                let runs = self.runs(scenario, arm);
+                let runs = self.0.of(index, arm);
                 if !runs.is_empty() {
                     add(&mut chart, &runs, name);
                 }
@@ -121,23 +108,21 @@ impl View<'_> {
         charts.collect()
     }
 
-    fn tested(&self) -> usize {
-        let arms = &self.study.plan.arms;
-        arms.iter()
-            .position(|arm| arm.base == Base::Evolved)
-            .unwrap_or(0)
+    /// Returns the runs of a scenario in the tested arm, or in the first arm if none evolves.
+    fn tested(&self, scenario: usize) -> Vec<&Facts> {
+        self.0.of(scenario, self.0.tested_arm().unwrap_or(0))
     }
 
     fn frequent(&self) -> Result<Vec<Panel>, SourceError> {
         let mut panels = Vec::new();
-        for (index, scenario) in self.study.plan.scenarios.iter().enumerate() {
-            let runs = self.runs(index, self.tested());
+        for (index, scenario) in self.0.study.plan.scenarios.iter().enumerate() {
+            let runs = self.tested(index);
             let times = |facts: &Facts| {
                 runs.iter()
                     .filter(|other| other.winner.structure == facts.winner.structure)
                     .count()
             };
-            // Of equally frequent ones the first in the alphabet.
+            // Ties are broken by alphabetical order.
             let most = runs.iter().max_by(|a, b| {
                 times(a)
                     .cmp(&times(b))
@@ -147,7 +132,7 @@ impl View<'_> {
             let caption = format!("{}: {} of {} runs", scenario.name, times(most), runs.len());
             let trees = vec![(caption, most.winner.structure.clone())];
             let sketches = sketches(scenario, trees)?.map_err(|message| SourceError::Misfit {
-                folder: self.study.name(&most.run),
+                folder: self.0.study.name(&most.run),
                 message,
             })?;
             panels.extend(sketches.into_iter().map(Panel::Tree));
@@ -155,14 +140,14 @@ impl View<'_> {
         Ok(panels)
     }
 
-    /// The panels of typical runs, and their names.
+    /// Returns the panels of the typical runs, and the names of these runs.
     fn typical_panels(
         &self,
         number: FigureNumber,
     ) -> Result<(Vec<Panel>, Vec<String>), SourceError> {
         let (mut panels, mut names) = (Vec::new(), Vec::new());
-        for (index, scenario) in self.study.plan.scenarios.iter().enumerate() {
-            let mut runs = self.runs(index, self.tested());
+        for (index, scenario) in self.0.study.plan.scenarios.iter().enumerate() {
+            let mut runs = self.tested(index);
             runs.sort_by(|a, b| {
                 a.fresh
                     .steps
@@ -172,25 +157,22 @@ impl View<'_> {
             let Some(median) = runs.get(runs.len().saturating_sub(1) / 2) else {
                 continue;
             };
-            let source = RunSource::read(&self.study.run_folder(&median.run))?;
+            let source = RunSource::read(&self.0.study.run_folder(&median.run))?;
             for mut panel in source.figure(number, "svg")?.panels {
-                match &mut panel {
-                    Panel::Chart(chart) => {
-                        chart.title = format!("{}: {}", scenario.name, chart.title)
-                    }
-                    Panel::Tree(tree) => {
-                        tree.caption = format!("{}: {}", scenario.name, tree.caption)
-                    }
-                }
+                let title = match &mut panel {
+                    Panel::Chart(chart) => &mut chart.title,
+                    Panel::Tree(tree) => &mut tree.caption,
+                };
+                *title = format!("{}: {title}", scenario.name);
                 panels.push(panel);
             }
-            names.push(self.study.name(&median.run));
+            names.push(self.0.study.name(&median.run));
         }
         Ok((panels, names))
     }
 }
 
-/// Adds the course of interquartile means over runs, from the first generation to the last.
+/// Adds a line of interquartile means over runs, from their first generation to their last.
 fn add_course(chart: &mut Chart, runs: &[&Facts], name: String, of: fn(&GenerationFacts) -> f64) {
     let points = (0..POINTS).map(|point| {
         let share = point as f64 / (POINTS - 1) as f64;
