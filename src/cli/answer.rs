@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::output::{self, CommandResult, Failure, Format};
+use super::output::{CommandResult, Failure, Format};
 use super::signals::{SignalWatcher, Termination};
 use crate::evolution::Workers;
 use crate::lab::{AnyExperiment, experiment};
@@ -59,11 +59,7 @@ impl AnswerArgs {
         if let Some(code) = termination.exit_code() {
             return Ok(ExitCode::from(code));
         }
-        let answer = answer?;
-        match self.format {
-            Format::Json => output::json(&answer)?,
-            Format::Text => output::text(&describe(&answer))?,
-        }
+        self.format.print(&answer?, describe)?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -61,11 +61,7 @@ pub(super) fn main(args: &Args) -> CommandResult {
         }
     }
     let all_valid = reports.iter().all(|report| report.valid);
-    Ok(if all_valid {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    Ok(ExitCode::from(u8::from(!all_valid)))
 }
 
 impl Report {

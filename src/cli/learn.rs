@@ -1,7 +1,5 @@
 //! `maxq-lab learn`: compares one learner with the exact values of a finite world.
 
-use std::fmt::Write;
-
 use clap::ValueEnum;
 use serde::Serialize;
 
@@ -195,45 +193,33 @@ fn describe(report: &Report) -> String {
         counted(trials, "trial"),
         learned.optimal_return
     );
-    // A given policy does not become optimal. Writing to a string cannot fail.
+    let mut line = |label: &str, value: String| text += &format!("{label:39}{value}\n");
+    // A given policy does not become optimal.
     if !learned.policy_is_given {
         let ends = |course: &Course| {
             let last = course.checks.last();
             last.is_some_and(|check| check.greedy_return.is_some())
         };
-        let at_the_end = learned.final_greedy_return.map_or_else(
+        let last = learned.final_greedy_return.map_or_else(
             || format!("ends its trials {}", only(learned, ends)),
             |mean| interval(mean, 4),
         );
-        let _ = write!(
-            text,
-            "expected return, final greedy policy   {}\n\
-             primitive steps until first optimal    {}\n\
-             primitive steps until always optimal   {}\n",
-            at_the_end,
-            reached(learned, learned.steps_until_optimal, |course| course
-                .steps_until_optimal),
-            reached(learned, learned.steps_until_always_optimal, |course| {
-                course.steps_until_always_optimal
-            }),
-        );
+        let first = |course: &Course| course.steps_until_optimal;
+        let first = reached(learned, learned.steps_until_optimal, first);
+        let always = |course: &Course| course.steps_until_always_optimal;
+        let always = reached(learned, learned.steps_until_always_optimal, always);
+        line("expected return, final greedy policy", last);
+        line("primitive steps until first optimal", first);
+        line("primitive steps until always optimal", always);
     }
-    let last = learned
-        .repeats
-        .first()
-        .and_then(|course| course.checks.last());
-    if let Some(check) = last {
-        let _ = writeln!(
-            text,
-            "largest error of a value in repeat 1   {:.4}",
-            check.largest_error
-        );
+    let course = learned.repeats.first();
+    if let Some(check) = course.and_then(|course| course.checks.last()) {
+        let error = format!("{:.4}", check.largest_error);
+        line("largest error of a value in repeat 1", error);
     }
     if let Some(grid) = report.values.get(report.shown) {
-        let _ = write!(text, "\nState values {}, learned in repeat 1:\n", grid.case);
-        text.push_str(&table(&grid.learned));
-        let _ = write!(text, "\nExact:\n");
-        text.push_str(&table(&grid.exact));
+        let (case, learned, exact) = (&grid.case, table(&grid.learned), table(&grid.exact));
+        text += &format!("\nState values {case}, learned in repeat 1:\n{learned}\nExact:\n{exact}");
     }
     text
 }

@@ -36,6 +36,20 @@ pub(super) enum Format {
     Json,
 }
 
+impl Format {
+    /// Prints a result as JSON, or as the text of `describe`.
+    pub(super) fn print<T: Serialize + ?Sized>(
+        self,
+        result: &T,
+        describe: impl FnOnce(&T) -> String,
+    ) -> Result<(), Failure> {
+        match self {
+            Self::Json => json(result),
+            Self::Text => text(&describe(result)),
+        }
+    }
+}
+
 /// A number with its noun: `1 repeat`, `2 repeats`.
 pub(super) fn counted(number: u64, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
@@ -48,7 +62,7 @@ pub(super) fn text(text: &str) -> Result<(), Failure> {
 }
 
 /// Writes a value to standard output as JSON.
-pub(super) fn json(value: &impl Serialize) -> Result<(), Failure> {
+pub(super) fn json(value: &(impl Serialize + ?Sized)) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)?;
     raw((ascii_controls(&text) + "\n").as_bytes())
 }

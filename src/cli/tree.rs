@@ -95,17 +95,16 @@ fn show(text: &str, options: &TreeFormat) -> Result<(), Failure> {
             draw(tree, catalogue, Glyphs::of_locale()),
         )
     })?;
-    if options.format == Format::Json {
-        return output::json(&summary);
-    }
-    output::text(&format!(
-        "{}\n\ndepth {}, {} composite and {}\n{}",
-        drawing.join("\n"),
-        summary.depth,
-        summary.composites,
-        counted(summary.primitives.len() as u64, "primitive subtask"),
-        by_state_type(&summary.primitives_by_state_type)
-    ))
+    options.format.print(&summary, |summary| {
+        format!(
+            "{}\n\ndepth {}, {} composite and {}\n{}",
+            drawing.join("\n"),
+            summary.depth,
+            summary.composites,
+            counted(summary.primitives.len() as u64, "primitive subtask"),
+            by_state_type(&summary.primitives_by_state_type)
+        )
+    })
 }
 
 /// The primitive subtasks of every state type, a line each.
@@ -118,10 +117,9 @@ pub(super) fn by_state_type<N: Borrow<str>>(primitives: &[Vec<N>]) -> String {
 fn check(text: &str, options: &TreeFormat) -> Result<(), Failure> {
     let scenario = Scenario::load(&options.scenario)?;
     let tree = with_tree(&scenario, text, to_text)?;
-    match options.format {
-        Format::Json => output::json(&json!({ "valid": true, "tree": tree })),
-        Format::Text => output::text(&format!("valid: {tree}\n")),
-    }
+    let report = json!({ "valid": true, "tree": tree });
+    let text = |_: &_| format!("valid: {tree}\n");
+    options.format.print(&report, text)
 }
 
 #[derive(Serialize)]
@@ -139,10 +137,8 @@ fn difference(a: &str, b: &str, options: &TreeFormat) -> Result<(), Failure> {
         b: to_text(second, catalogue),
         difference: structural_difference(&first, second, catalogue),
     })?;
-    match options.format {
-        Format::Json => output::json(&report),
-        Format::Text => output::text(&format!("{}\n", report.difference)),
-    }
+    let text = |report: &Difference| format!("{}\n", report.difference);
+    options.format.print(&report, text)
 }
 
 /// Reads a hierarchy by the rules of `scenario` and passes it to `what`, with the subtasks.

@@ -46,10 +46,7 @@ pub(super) struct ReportArgs {
 /// Runs `study report`.
 pub(super) fn report(args: &ReportArgs) -> CommandResult {
     let written = write_report(&Study::open(&args.dir)?)?;
-    match args.format {
-        Format::Json => output::json(&written.findings)?,
-        Format::Text => output::text(&written.text)?,
-    }
+    args.format.print(&written.findings, |_| written.text)?;
     let folder = args.dir.join("report");
     output::message(&format!(
         "wrote {} files to {}",
@@ -63,10 +60,8 @@ pub(super) fn report(args: &ReportArgs) -> CommandResult {
 pub(super) fn show(args: &StatusArgs) -> CommandResult {
     let study = Study::open(&args.dir)?;
     let runs = status(&study);
-    match args.format {
-        Format::Json => output::json(&runs)?,
-        Format::Text => output::text(&describe(&study, &runs))?,
-    }
+    args.format
+        .print(&runs[..], |runs| describe(&study, runs))?;
     Ok(ExitCode::SUCCESS)
 }
 

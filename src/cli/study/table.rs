@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 use std::path::Path;
-use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
@@ -10,7 +9,7 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use super::progress::OwnProgress;
 use crate::cli::dashboard::DashboardSettings;
 use crate::cli::output::Failure;
-use crate::cli::signals::SignalWatcher;
+use crate::cli::signals::{SignalWatcher, spawn};
 use crate::cli::watch::INTERVAL;
 use crate::dashboard::session::{Exit, RunsExit, RunsSession, Source};
 use crate::dashboard::terminal::Terminal;
@@ -93,23 +92,19 @@ impl Reader {
         study: Study,
         interval: Duration,
         own: impl Fn() -> OwnProgress + Send + 'static,
-    ) -> std::io::Result<Self> {
+    ) -> Result<Self, Failure> {
         let (sender, news) = bounded(0);
         let (stop, stopped) = bounded::<()>(0);
-        thread::Builder::new()
-            .name(String::from("study"))
-            .spawn(move || {
-                let (mut past, mut watch) = (HashMap::new(), StatusWatch::of(&study));
-                // The channel has no buffer: nothing is read while the table is not shown.
-                while sender
-                    .send(rows(&study, watch.look(), &mut past, own()))
-                    .is_ok()
-                {
-                    if stopped.recv_timeout(interval) != Err(RecvTimeoutError::Timeout) {
-                        return;
-                    }
+        spawn("study", move || {
+            let (mut past, mut watch) = (HashMap::new(), StatusWatch::of(&study));
+            let mut read = || rows(&study, watch.look(), &mut past, own());
+            // The channel has no buffer: nothing is read while the table is not shown.
+            while sender.send(read()).is_ok() {
+                if stopped.recv_timeout(interval) != Err(RecvTimeoutError::Timeout) {
+                    return;
                 }
-            })?;
+            }
+        })?;
         Ok(Self { news, _stop: stop })
     }
 }
