@@ -14,7 +14,9 @@ use std::path::Path;
 use std::time::{Duration, SystemTime};
 
 use common::{program, run_in, set, short, stop_after, threads, wait_until};
-use maxq_lab::lab::{Event, Life, News, Recording, RunOptions, Watch, read_events, resume, start};
+use maxq_lab::lab::{
+    Event, Liveness, News, Recording, RunOptions, Watch, read_events, resume, start,
+};
 use tempfile::TempDir;
 
 /// All news of a follower, in order.
@@ -41,8 +43,8 @@ impl Follower {
         });
     }
 
-    fn until_life(&mut self, life: Life) {
-        self.until(&format!("{life:?}"), |news| *news == News::Life(life));
+    fn until_life(&mut self, life: Liveness) {
+        self.until(&format!("{life:?}"), |news| *news == News::Liveness(life));
     }
 
     /// The recorded events since the run that is told of now was announced.
@@ -71,18 +73,18 @@ fn a_run_is_followed_from_before_its_folder_is_there_to_its_end() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("later/run");
     let mut follower = Follower::of(&folder);
-    follower.until_life(Life::Absent);
+    follower.until_life(Liveness::Absent);
     let scenario = short(&["evolution.selection=random"]);
     let run = start(scenario.clone(), 3, &folder, &threads(1)).unwrap();
     run.controls.pause();
     follower.until("the pause", |news| *news == News::Event(Event::Paused));
-    assert!(follower.told.contains(&News::Life(Life::Computing)));
+    assert!(follower.told.contains(&News::Liveness(Liveness::Computing)));
     // A whole run may be over between two beats of its pulse; a run that waits is not.
     run.controls.step();
     let progress = |news: &News| matches!(news, News::Event(event) if event.is_progress());
     follower.until("progress", progress);
     run.controls.resume();
-    follower.until_life(Life::Over);
+    follower.until_life(Liveness::Over);
     run.join().unwrap();
     assert!(follower.recorded() == log_of(&folder));
     let News::Run(manifest) = &follower.told[1] else {
@@ -103,7 +105,7 @@ fn a_torn_line_is_told_when_it_is_whole() {
     );
     stop_after(run.unwrap(), 2);
     let mut follower = Follower::of(&folder);
-    follower.until_life(Life::Stopped);
+    follower.until_life(Liveness::Stopped);
     let before = follower.recorded();
     let event = Event::Ended {
         generations: 2,
@@ -123,7 +125,7 @@ fn a_torn_line_is_told_when_it_is_whole() {
     follower.until("a look", |news| *news == saved);
     assert_eq!(follower.recorded(), before);
     log.write_all(&line.as_bytes()[20..]).unwrap();
-    follower.until_life(Life::Over);
+    follower.until_life(Liveness::Over);
     assert_eq!(follower.recorded(), [before, vec![event]].concat());
     assert_eq!(follower.runs(), 1);
 }
@@ -134,7 +136,7 @@ fn a_run_that_took_its_place_is_told_from_its_start() {
     let folder = parent.path().join("run");
     run_in(&folder, &short(&[]), 1, &threads(2));
     let mut follower = Follower::of(&folder);
-    follower.until_life(Life::Over);
+    follower.until_life(Liveness::Over);
     let force = RunOptions {
         force: true,
         ..threads(2)
@@ -157,7 +159,7 @@ fn a_resumed_run_is_told_on_whatever_was_cut_off() {
     let scenario = short(&["evolution.selection=random", "evolution.generation_limit=2"]);
     run_in(&folder, &scenario, 1, &threads(2));
     let mut follower = Follower::of(&folder);
-    follower.until_life(Life::Over);
+    follower.until_life(Liveness::Over);
     resume(&folder, Some(4), &threads(2))
         .unwrap()
         .join()
@@ -190,11 +192,11 @@ fn a_killed_run_is_recognised() {
     follower.until("a generation", |news| {
         matches!(news, News::Event(Event::Generation(_)))
     });
-    follower.until_life(Life::Computing);
+    follower.until_life(Liveness::Computing);
     child.kill().unwrap();
     child.wait().unwrap();
-    follower.until_life(Life::Silent);
-    assert_eq!(Recording::read(&folder).unwrap().life, Life::Silent);
+    follower.until_life(Liveness::Silent);
+    assert_eq!(Recording::read(&folder).unwrap().liveness, Liveness::Silent);
     wait_until("the last event", || {
         follower.told.extend(follower.watch.news.try_iter());
         follower.recorded() == log_of(&folder)
@@ -239,12 +241,12 @@ fn a_follower_leaves_no_trace() {
     };
     let before = state();
     let mut follower = Follower::of(&folder);
-    follower.until_life(Life::Over);
+    follower.until_life(Liveness::Over);
     let recording = Recording::read(&folder).unwrap();
     let recorded = |event: &&Event| event.is_recorded();
     let recorded: Vec<_> = recording.events.iter().filter(recorded).cloned().collect();
     assert!(recorded == log_of(&folder));
-    assert_eq!(recording.life, Life::Over);
+    assert_eq!(recording.liveness, Liveness::Over);
     // No lock is held: another process may go on with the run.
     resume(&folder, None, &threads(1)).unwrap().join().unwrap();
     let unchanged = ["events.jsonl", "lock"].map(|name| folder.join(name));

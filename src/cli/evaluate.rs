@@ -8,7 +8,7 @@ use super::answer::{AnswerArgs, Resources};
 use super::args::ScenarioArgs;
 use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
-use crate::lab::{Protocol, Scored, departures, in_words, with_changes};
+use crate::lab::{Protocol, Scored, overrides, summarise, with_changes};
 
 /// Evaluate the structure of a hierarchy.
 ///
@@ -97,7 +97,7 @@ impl Args {
         let scenario = experiment.scenario();
         Ok(Report {
             scenario: scenario.name.clone(),
-            changed: in_words(&departures(scenario)),
+            changed: summarise(&overrides(scenario)),
             seed: self.answer.seed,
             warmup: protocol.warmup,
             trials: protocol.trials,

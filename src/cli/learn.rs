@@ -9,7 +9,7 @@ use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
 use crate::lab::{
     Algorithm, AnyExperiment, Course, GivenPolicy, LearnError, LearnProtocol, Learned, Mean,
-    ValueGrid, departures, in_words, with_changes,
+    ValueGrid, overrides, summarise, with_changes,
 };
 
 /// Train one learner in a finite world and compare it with the exact values.
@@ -168,7 +168,7 @@ impl Args {
         Ok(Report {
             scenario: name.clone(),
             algorithm: self.algorithm.word(),
-            changed: in_words(&departures(experiment.scenario())),
+            changed: summarise(&overrides(experiment.scenario())),
             seed: self.answer.seed,
             steps: self.steps,
             tolerance: self.tolerance,

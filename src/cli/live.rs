@@ -17,7 +17,7 @@ use super::tree::{by_state_type, with_tree};
 use crate::dashboard::session::{Exit, Source};
 use crate::dashboard::terminal;
 use crate::hierarchy::{Glyphs, draw};
-use crate::lab::{Outcome, Run, departures, in_words, lasting_experiment};
+use crate::lab::{Outcome, Run, lasting_experiment, overrides, summarise};
 use crate::scenario::{Scenario, Selection};
 
 /// How long a terminal may take to accept the last messages after a signal.
@@ -185,7 +185,7 @@ fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
         ),
     ];
     // Changed settings are named, so that the result does not pass for the built-in scenario's.
-    let changed = in_words(&departures(scenario));
+    let changed = summarise(&overrides(scenario));
     lines.extend(changed.map(|changed| format!("changed: {changed}")));
     if let Some(best) = &outcome.best {
         lines.push(format!(

@@ -10,7 +10,7 @@ use super::dashboard::{DashboardArgs, exit_code};
 use super::output::{self, CommandResult, Failure};
 use super::signals::SignalWatcher;
 use crate::dashboard::session::{Exit, Source};
-use crate::lab::{Life, Manifest, News, Recording, Watch, lasting_experiment};
+use crate::lab::{Liveness, Manifest, News, Recording, Watch, lasting_experiment};
 
 /// Time between two reads of a run folder.
 pub(super) const INTERVAL: Duration = Duration::from_millis(250);
@@ -57,7 +57,7 @@ fn wait_for_run(folder: &Path, watch: &Watch, signals: &SignalWatcher) -> Result
         select! {
             recv(watch.news) -> news => match news {
                 Ok(News::Run(manifest)) => return Ok(Found::Run(manifest)),
-                Ok(News::Life(Life::Absent)) => output::message(&format!(
+                Ok(News::Liveness(Liveness::Absent)) => output::message(&format!(
                     "waiting for a run in {} (Ctrl-C to cancel)",
                     folder.display()
                 )),
@@ -101,7 +101,7 @@ pub(super) fn replay(args: &ReplayArgs) -> CommandResult {
     let manifest = &recording.manifest;
     let experiment = lasting_experiment(manifest.scenario.clone(), manifest.seed)?;
     let start = args.start.read(experiment)?;
-    let is_live = recording.life == Life::Computing;
+    let is_live = recording.liveness == Liveness::Computing;
     let exit = dashboard.starting_at(start).show(
         experiment,
         &args.run_dir,

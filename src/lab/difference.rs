@@ -41,7 +41,7 @@ pub fn differences(one: &Scenario, other: &Scenario) -> Vec<Difference> {
 /// The settings in which a scenario departs from the embedded one of its name; none where
 /// there is no embedded one.
 #[must_use]
-pub fn departures(scenario: &Scenario) -> Vec<Difference> {
+pub fn overrides(scenario: &Scenario) -> Vec<Difference> {
     let embedded = EMBEDDED.iter().find(|known| known.name == scenario.name);
     let embedded = embedded.and_then(|known| Scenario::parse(known.json, known.name).ok());
     embedded.map_or_else(Vec::new, |embedded| differences(scenario, &embedded))
@@ -53,7 +53,7 @@ const TOLD: usize = 6;
 /// The first differences, as `--set` takes them, and how many more there are; none if all is
 /// alike.
 #[must_use]
-pub fn in_words(differences: &[Difference]) -> Option<String> {
+pub fn summarise(differences: &[Difference]) -> Option<String> {
     let told: Vec<_> = differences
         .iter()
         .take(TOLD)
@@ -67,7 +67,7 @@ pub fn in_words(differences: &[Difference]) -> Option<String> {
 }
 
 /// The name of a scenario and in what it departs from the embedded one of that name, in the
-/// words of [`in_words`].
+/// words of [`summarise`].
 #[must_use]
 pub fn with_changes(name: &str, changed: Option<&str>) -> String {
     match changed {
@@ -154,11 +154,11 @@ mod tests {
 
     #[test]
     fn a_scenario_departs_from_the_embedded_one_of_its_name() {
-        assert_eq!(departures(&smoke(&[])), []);
-        let changed = departures(&smoke(&["evolution.generation_limit=3"]));
+        assert_eq!(overrides(&smoke(&[])), []);
+        let changed = overrides(&smoke(&["evolution.generation_limit=3"]));
         assert_eq!(changed[0].to_string(), "evolution.generation_limit=3");
         assert_eq!(
-            departures(&smoke(&["name=mine", "learning.discount=0.5"])),
+            overrides(&smoke(&["name=mine", "learning.discount=0.5"])),
             []
         );
     }

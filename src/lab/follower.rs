@@ -12,7 +12,7 @@ use super::event::Event;
 use super::folder::RunFolder;
 use super::log::{LogError, read_event};
 use super::manifest::{Manifest, host_name};
-use super::news::{Life, News};
+use super::news::{Liveness, News};
 use super::pulse::{BEAT, Beat, PULSE_FILE};
 use super::recording::Recording;
 use super::run_error::RunError;
@@ -38,7 +38,7 @@ pub struct Follower {
     log: LogReader,
     checkpoint: Option<Stamp>,
     beat: Option<(Beat, Instant)>,
-    life: Option<Life>,
+    liveness: Option<Liveness>,
     unreadable: u32,
 }
 
@@ -68,7 +68,7 @@ impl Follower {
             log: LogReader::default(),
             checkpoint: None,
             beat: None,
-            life: None,
+            liveness: None,
             unreadable: 0,
         }
     }
@@ -101,13 +101,13 @@ impl Follower {
             Some(Stamped { value, .. }) => Ok(Recording {
                 manifest: value,
                 events,
-                life: self.life.unwrap_or(Life::Stopped),
+                liveness: self.liveness.unwrap_or(Liveness::Stopped),
             }),
             // The error that tells what is missing.
             None => Ok(Recording {
                 manifest: RunFolder::read_manifest(&self.folder)?,
                 events,
-                life: Life::Absent,
+                liveness: Liveness::Absent,
             }),
         }
     }
@@ -122,7 +122,7 @@ impl Follower {
             if self.run.take().is_some() {
                 self.forget();
             }
-            self.tell_life(Life::Absent, news);
+            self.tell_life(Liveness::Absent, news);
             return Ok(());
         };
         if self.run.as_ref().is_none_or(|run| run.stamp != stamp) {
@@ -216,8 +216,8 @@ impl Follower {
         let Some(found) = found else {
             self.beat = None;
             let life = match self.log.over {
-                true => Life::Over,
-                false => Life::Stopped,
+                true => Liveness::Over,
+                false => Liveness::Stopped,
             };
             self.tell_life(life, news);
             return;
@@ -225,21 +225,28 @@ impl Follower {
         match &mut self.beat {
             Some((beat, since)) if *beat == found => {
                 if is_dead(&found) || now.duration_since(*since) >= SILENCE {
-                    self.tell_life(Life::Silent, news);
+                    self.tell_life(Liveness::Silent, news);
                 }
             }
             known => {
                 let before = known.replace((found.clone(), now)).map(|(beat, _)| beat);
                 let dead = is_dead(&found);
                 tell_beat(before.as_ref(), found, news);
-                self.tell_life(if dead { Life::Silent } else { Life::Computing }, news);
+                self.tell_life(
+                    if dead {
+                        Liveness::Silent
+                    } else {
+                        Liveness::Computing
+                    },
+                    news,
+                );
             }
         }
     }
 
-    fn tell_life(&mut self, life: Life, news: &mut Vec<News>) {
-        if self.life.replace(life) != Some(life) {
-            news.push(News::Life(life));
+    fn tell_life(&mut self, life: Liveness, news: &mut Vec<News>) {
+        if self.liveness.replace(life) != Some(life) {
+            news.push(News::Liveness(life));
         }
     }
 

@@ -12,14 +12,14 @@ pub enum News {
     /// A fact about the run.
     Event(Event),
     /// Whether the run is being computed has changed.
-    Life(Life),
+    Liveness(Liveness),
     /// Something in the folder cannot be read. It is tried again.
     Trouble(String),
 }
 
 /// Whether a run is being computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Life {
+pub enum Liveness {
     /// There is no run here yet, or no longer.
     Absent,
     /// A process works on it.

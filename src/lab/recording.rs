@@ -2,7 +2,7 @@
 
 use super::event::Event;
 use super::manifest::Manifest;
-use super::news::Life;
+use super::news::Liveness;
 
 /// A run folder as it is at one moment.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Recording {
     /// The events so far, and that a checkpoint is there.
     pub events: Vec<Event>,
     /// Whether it is being computed, as far as one look can tell.
-    pub life: Life,
+    pub liveness: Liveness,
 }
 
 impl Recording {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::results::{EVALUATION, SUMMARY, StudyRunError, evaluation, summary};
 use super::study::{RunId, Study};
 use crate::files::Stamp;
-use crate::lab::{Event, Follower, Life, News, Recording, RunError};
+use crate::lab::{Event, Follower, Liveness, News, Recording, RunError};
 
 /// The state of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -185,10 +185,10 @@ impl Watched {
         follower.look(now).map_err(|error| error.to_string())?;
         status.generations = follower.generations;
         status.best_steps.clone_from(&follower.best_steps);
-        status.stage = match follower.life {
-            Life::Computing => RunState::Running,
-            Life::Over => RunState::Evolved,
-            Life::Absent | Life::Silent | Life::Stopped => RunState::Interrupted,
+        status.stage = match follower.liveness {
+            Liveness::Computing => RunState::Running,
+            Liveness::Over => RunState::Evolved,
+            Liveness::Absent | Liveness::Silent | Liveness::Stopped => RunState::Interrupted,
         };
         Ok(())
     }
@@ -213,7 +213,7 @@ struct Followed {
     follower: Follower,
     generations: u64,
     best_steps: Vec<f64>,
-    life: Life,
+    liveness: Liveness,
 }
 
 impl Followed {
@@ -222,7 +222,7 @@ impl Followed {
             follower: Follower::of(folder),
             generations: 0,
             best_steps: Vec::new(),
-            life: Life::Stopped,
+            liveness: Liveness::Stopped,
         }
     }
 
@@ -236,7 +236,7 @@ impl Followed {
                     self.generations = record.generation;
                     self.best_steps.extend(record.mean_trial_steps(1));
                 }
-                News::Life(life) => self.life = life,
+                News::Liveness(life) => self.liveness = life,
                 News::Event(_) | News::Trouble(_) => {}
             }
         }

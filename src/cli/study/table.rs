@@ -14,7 +14,7 @@ use crate::cli::watch::INTERVAL;
 use crate::dashboard::session::{Exit, RunsExit, RunsSession, Source};
 use crate::dashboard::terminal::Terminal;
 use crate::dashboard::{RunRow, RunsNews, Standing};
-use crate::lab::{Life, Recording, Watch, lasting_experiment};
+use crate::lab::{Liveness, Recording, Watch, lasting_experiment};
 use crate::report::{RunState, RunStatus, StatusWatch, Study, course};
 
 /// Shortest time between two reads of the study folder.
@@ -68,8 +68,8 @@ fn open(
     let recording = Recording::read(folder)?;
     let manifest = &recording.manifest;
     let experiment = lasting_experiment(manifest.scenario.clone(), manifest.seed)?;
-    let watch = match recording.life {
-        Life::Computing => Some(Watch::start(folder, INTERVAL)?),
+    let watch = match recording.liveness {
+        Liveness::Computing => Some(Watch::start(folder, INTERVAL)?),
         _ => None,
     };
     let source = match &watch {

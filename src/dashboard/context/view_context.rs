@@ -12,7 +12,7 @@ use crate::dashboard::look::{Look, Paint};
 use crate::dashboard::view_id::ViewId;
 use crate::evolution::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Tree, parse};
-use crate::lab::{AnyExperiment, departures};
+use crate::lab::{AnyExperiment, overrides};
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 use crate::worlds::scene::Scenery;
@@ -127,7 +127,7 @@ impl ViewContext {
         look: Look,
         keys: KeyMap,
     ) -> Self {
-        let changed = departures(experiment.scenario());
+        let changed = overrides(experiment.scenario());
         Self {
             experiment,
             folder,

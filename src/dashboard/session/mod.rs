@@ -28,7 +28,7 @@ use super::context::{Effect, Input, Mouse, ViewContext};
 use super::keys::Key;
 use super::terminal::{Job, Terminal};
 use crate::lab::inspection::Archive;
-use crate::lab::{Life, Manifest, News, lasting_experiment};
+use crate::lab::{Liveness, Manifest, News, lasting_experiment};
 use loader::{Loaded, Loader};
 use wait::{WakeUp, wait};
 
@@ -175,9 +175,9 @@ impl<'s> Session<'s> {
                 self.turn_to(*manifest);
                 Vec::new()
             }
-            News::Life(Life::Computing) => Vec::new(),
-            News::Life(life) => {
-                if matches!((&self.source, life), (Source::Live(_), Life::Silent)) {
+            News::Liveness(Liveness::Computing) => Vec::new(),
+            News::Liveness(life) => {
+                if matches!((&self.source, life), (Source::Live(_), Liveness::Silent)) {
                     return Some(Exit::Failed);
                 }
                 if let Some(text) = describe(life) {
@@ -328,14 +328,14 @@ impl<'s> Session<'s> {
 }
 
 /// What is said of a run that is not being computed.
-fn describe(life: Life) -> Option<&'static str> {
+fn describe(life: Liveness) -> Option<&'static str> {
     match life {
-        Life::Computing | Life::Over => None,
-        Life::Absent => Some("the run folder is gone; waiting for it"),
-        Life::Silent => {
+        Liveness::Computing | Liveness::Over => None,
+        Liveness::Absent => Some("the run folder is gone; waiting for it"),
+        Liveness::Silent => {
             Some("no sign of life: the run died or froze, or its folder is out of reach")
         }
-        Life::Stopped => Some("nobody computes this run; it can be resumed"),
+        Liveness::Stopped => Some("nobody computes this run; it can be resumed"),
     }
 }
 

@@ -3,7 +3,7 @@
 use crossbeam_channel::{Receiver, TryRecvError};
 
 use crate::dashboard::context::Effect;
-use crate::lab::{Activity, Controls, Event, Life, News, Recording, Watch};
+use crate::lab::{Activity, Controls, Event, Liveness, News, Recording, Watch};
 
 /// News that are taken in at once; if there are more, the others come with the next frame.
 const MOST: usize = 4096;
@@ -44,7 +44,7 @@ impl<'s> Source<'s> {
     #[must_use]
     pub fn recorded(recording: Recording) -> Self {
         let events = recording.events.into_iter().map(News::Event);
-        Self::Recorded(events.chain([News::Life(recording.life)]).collect())
+        Self::Recorded(events.chain([News::Liveness(recording.liveness)]).collect())
     }
 
     /// What is new.
@@ -90,7 +90,7 @@ impl Live<'_> {
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => {
                     self.closed = true;
-                    news.push(News::Life(self.life()));
+                    news.push(News::Liveness(self.life()));
                 }
             }
         }
@@ -98,12 +98,12 @@ impl Live<'_> {
     }
 
     /// What has become of a run that tells nothing more.
-    fn life(&self) -> Life {
+    fn life(&self) -> Liveness {
         match self.controls.activity() {
-            _ if self.over => Life::Over,
-            Activity::Stopped => Life::Stopped,
+            _ if self.over => Liveness::Over,
+            Activity::Stopped => Liveness::Stopped,
             // It could not be recorded; joining it tells why.
-            _ => Life::Silent,
+            _ => Liveness::Silent,
         }
     }
 }

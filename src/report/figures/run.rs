@@ -7,7 +7,7 @@ use super::primitives::action_values;
 use super::{Chart, Figure, FigureNumber, Panel, Series, Sketch};
 use crate::evolution::GenerationRecord;
 use crate::lab::{
-    Event, Recording, RunError, SetupError, departures, experiment, in_words, shell_word,
+    Event, Recording, RunError, SetupError, experiment, overrides, shell_word, summarise,
     with_changes,
 };
 use crate::scenario::Scenario;
@@ -99,7 +99,7 @@ impl RunSource {
     #[must_use]
     pub fn provenance(&self, arguments: &str) -> String {
         let generations = self.records.len();
-        let changed = in_words(&departures(&self.scenario));
+        let changed = summarise(&overrides(&self.scenario));
         format!(
             "Run of {}, seed {}, {generations} generations, maxq-lab {}: {}; {}",
             with_changes(&self.scenario.name, changed.as_deref()),
