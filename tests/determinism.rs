@@ -163,7 +163,6 @@ fn every_switch_is_deterministic_and_matters() {
     for switch in [
         "learning.primitive_learning=shared",
         "learning.composite_choice=random",
-        "learning.completion_bootstrap=as_printed",
         "learning.cool_on=goal",
         "learning.pseudo_reward=all",
         "evolution.selection=random",

@@ -1,4 +1,4 @@
-//! Genetic programming of hierarchies (Thesis 3.2, Algorithm 3.1).
+#![doc = include_str!("README.md")]
 
 mod breeding;
 mod crossover;

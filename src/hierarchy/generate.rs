@@ -1,4 +1,4 @@
-//! Hierarchies that follow from a catalogue alone: designed, flat, and drawn by chance.
+//! Hierarchies made from a catalogue alone: complete, flat and random ones.
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -8,13 +8,15 @@ use super::typing::check;
 use crate::random::Stream;
 use crate::worlds::{Catalogue, SubtaskId};
 
-/// Draws of a random hierarchy before the flat one is taken instead. Of the foraging
-/// task's draws about one in four obeys the rules.
+/// Attempts to draw a random hierarchy before the flat one is returned instead. In the
+/// foraging task about one draw in four obeys the rules.
 const MAX_DRAWS: usize = 10_000;
 
-/// The complete hierarchy (Thesis Figure 4.2): every composite subtask, each below the
-/// most special one that contains its states, and every primitive subtask wherever no
-/// composite takes over.
+/// Returns the complete hierarchy (Thesis Figure 4.2).
+///
+/// It has every composite subtask, each below the smallest one that contains its state
+/// types. Primitive subtasks stand wherever state types are left that no composite child
+/// covers.
 #[must_use]
 pub fn complete(catalogue: &Catalogue) -> Tree {
     let mut preorder = vec![(SubtaskId::ROOT, 1)];
@@ -41,8 +43,8 @@ fn complete_below(
     preorder.extend(primitives.map(|primitive| (primitive, depth)));
 }
 
-/// The smallest composite whose states properly contain those of `composite`; of equals
-/// the first.
+/// Returns the smallest composite subtask whose state types properly contain those of
+/// `composite`, the first of equals.
 fn container(composite: SubtaskId, catalogue: &Catalogue) -> Option<SubtaskId> {
     let states = |id: SubtaskId| catalogue.subtask(id).active;
     let own = states(composite);
@@ -53,7 +55,7 @@ fn container(composite: SubtaskId, catalogue: &Catalogue) -> Option<SubtaskId> {
     smallest.or_else(|| (composite != SubtaskId::ROOT).then_some(SubtaskId::ROOT))
 }
 
-/// The flat hierarchy: a root that chooses among all primitive subtasks.
+/// Returns the flat hierarchy: a root that chooses among all primitive subtasks.
 #[must_use]
 pub fn flat(catalogue: &Catalogue) -> Tree {
     let primitives = catalogue.primitives().map(|primitive| (primitive, 2));
@@ -64,11 +66,12 @@ pub fn flat(catalogue: &Catalogue) -> Tree {
     Tree::of(&preorder)
 }
 
-/// A random hierarchy that obeys the rules.
+/// Draws a random hierarchy that obeys the typing rules.
 ///
-/// From the root down every subtask that may be a child is one with probability 1/2, in
-/// random order; composite subtasks only where their children still fit into
-/// `maximum_depth`. The whole is drawn again until it obeys the rules.
+/// From the root down, every subtask that is allowed as a child becomes one with
+/// probability 1/2. Children stand in random order. A composite subtask is drawn only
+/// where its own children still fit into `maximum_depth`. The whole tree is drawn again
+/// until it obeys the rules.
 #[must_use]
 pub fn random_tree(catalogue: &Catalogue, maximum_depth: usize, rng: &mut Stream) -> Tree {
     let drawn = (0..MAX_DRAWS).find_map(|_| {
@@ -91,9 +94,10 @@ pub fn random_tree(catalogue: &Catalogue, maximum_depth: usize, rng: &mut Stream
     drawn.unwrap_or_else(|| flat(catalogue))
 }
 
-/// A subtask with children drawn as those of a random hierarchy are, of at most `levels`
-/// levels, for a place in `tree`: composite subtasks of that do not occur in it.
-/// It need not obey the rules.
+/// Draws a subtree of at most `levels` levels below `subtask`, with children drawn as in
+/// [`random_tree`]. Composite subtasks that occur in `tree` are left out.
+///
+/// The subtree need not obey the rules.
 pub(crate) fn random_subtree(
     subtask: SubtaskId,
     tree: &Tree,

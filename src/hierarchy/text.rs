@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::tree::Tree;
 use crate::worlds::Catalogue;
 
-/// Longest text that is read, in bytes.
+/// The longest text that is read, in bytes.
 pub const MAX_TEXT_BYTES: usize = 4096;
 
 /// Why a text is not a hierarchy.
@@ -17,19 +17,19 @@ pub enum TextError {
         /// Length in bytes.
         found: usize,
     },
-    /// Something else was expected at a place in the text.
+    /// A token stands where another is expected.
     #[error("at byte {at}: found {found}; allowed: {expected}")]
     Unexpected {
         /// Offset in bytes, from 0.
         at: usize,
-        /// What stands there.
+        /// The token found.
         found: String,
-        /// What may stand there.
+        /// The tokens allowed there.
         expected: String,
     },
 }
 
-/// Reads the text form. Typing rules are not checked ([`super::check`]).
+/// Reads the text form of a hierarchy. Typing rules are left to [`super::check`].
 ///
 /// # Errors
 /// When the text is too long, is not one tree in parentheses, or names a subtask
@@ -105,7 +105,7 @@ fn tokens(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// Writes the text form, children in their order.
+/// Returns the text form of a hierarchy, children in their order.
 #[must_use]
 pub fn to_text(tree: &Tree, catalogue: &Catalogue) -> String {
     write(
@@ -116,7 +116,7 @@ pub fn to_text(tree: &Tree, catalogue: &Catalogue) -> String {
     )
 }
 
-/// The length of the text form in bytes.
+/// Returns the length of the text form in bytes.
 pub(super) fn text_bytes(tree: &Tree, catalogue: &Catalogue) -> usize {
     let nodes = (0..tree.nodes().len()).map(|node| {
         let has_children = tree.children(node).next().is_some();
@@ -127,8 +127,9 @@ pub(super) fn text_bytes(tree: &Tree, catalogue: &Catalogue) -> usize {
     nodes.sum()
 }
 
-/// Writes the canonical structure: the text form with children sorted, equal for
-/// two trees exactly if they are the same when the order of children is ignored.
+/// Returns the canonical form: the text form with sorted children.
+///
+/// It is equal for two trees exactly if they differ at most in the order of children.
 #[must_use]
 pub fn canonical(tree: &Tree, catalogue: &Catalogue) -> String {
     let sorted = |mut children: Vec<String>| {

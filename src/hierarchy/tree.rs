@@ -7,26 +7,28 @@ use crate::worlds::SubtaskId;
 /// A node of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Node {
-    /// The subtask it stands for.
+    /// Its subtask.
     pub subtask: SubtaskId,
     /// Index of its parent; `None` for the root.
     pub parent: Option<usize>,
-    /// Levels from the root, which is at 1.
+    /// Its level, counted from the root, which is at 1.
     pub depth: usize,
     /// Index after its last descendant: its subtree is `index..end`.
     end: usize,
 }
 
-/// An ordered tree of subtasks, its nodes in preorder: the root is node 0 and a
-/// subtree is a range of nodes.
+/// An ordered tree of subtasks.
+///
+/// Nodes are numbered in preorder: the root is node 0 and a subtree is a range of nodes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tree {
     nodes: Vec<Node>,
 }
 
 impl Tree {
-    /// The tree of the given subtasks and depths in preorder, the root first at
-    /// depth 1; `None` if these are not the depths of a tree.
+    /// Makes a tree of subtasks and their depths in preorder, the root first at depth 1.
+    ///
+    /// Returns `None` if these are not the depths of a tree.
     #[must_use]
     pub fn from_preorder(preorder: &[(SubtaskId, usize)]) -> Option<Self> {
         let mut nodes: Vec<Node> = Vec::with_capacity(preorder.len());
@@ -51,25 +53,25 @@ impl Tree {
         (!nodes.is_empty()).then_some(Self { nodes })
     }
 
-    /// All nodes in preorder; never empty.
+    /// Returns all nodes in preorder. There is at least the root.
     #[must_use]
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
-    /// The subtask of a node.
+    /// Returns the subtask of a node.
     #[must_use]
     pub fn subtask(&self, node: usize) -> SubtaskId {
         self.nodes[node].subtask
     }
 
-    /// The nodes of the subtree at `node`.
+    /// Returns the nodes of the subtree at `node`.
     #[must_use]
     pub fn subtree(&self, node: usize) -> Range<usize> {
         node..self.nodes[node].end
     }
 
-    /// The children of a node, in order.
+    /// Returns the children of a node in order.
     pub fn children(&self, node: usize) -> impl Iterator<Item = usize> + Clone + '_ {
         let end = self.nodes[node].end;
         let first = Some(node + 1).filter(|&child| child < end);
@@ -78,24 +80,24 @@ impl Tree {
         })
     }
 
-    /// The ancestors of a node, its parent first, the root last.
+    /// Returns the ancestors of a node, its parent first, the root last.
     pub fn ancestors(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(self.nodes[node].parent, |&parent| self.nodes[parent].parent)
     }
 
-    /// Number of levels; a root without children has one.
+    /// Returns the number of levels. A root without children has one.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.nodes.iter().map(|node| node.depth).max().unwrap_or(0)
     }
 
-    /// The subtree at `node` as a tree of its own.
+    /// Returns the subtree at `node` as a tree of its own.
     #[must_use]
     pub fn at(&self, node: usize) -> Self {
         Self::of(&self.preorder(self.subtree(node), 1))
     }
 
-    /// This tree without the subtree at `node`, which is not the root.
+    /// Returns this tree without the subtree at `node`, which must not be the root.
     #[must_use]
     pub fn pruned(&self, node: usize) -> Self {
         let mut all = self.preorder(0..self.nodes.len(), 1);
@@ -103,7 +105,7 @@ impl Tree {
         Self::of(&all)
     }
 
-    /// This tree with another as the last child of `parent`.
+    /// Returns this tree with `child` as the last child of `parent`.
     #[must_use]
     pub fn grown(&self, parent: usize, child: &Self) -> Self {
         let mut all = self.preorder(0..self.nodes.len(), 1);
@@ -113,8 +115,8 @@ impl Tree {
         Self::of(&all)
     }
 
-    /// This tree with the subtree at `site` replaced by the donor's subtree at
-    /// `donor_site`. `site` is not the root.
+    /// Returns this tree with the subtree at `site` replaced by the donor's subtree at
+    /// `donor_site`. `site` must not be the root.
     #[must_use]
     pub fn grafted(&self, site: usize, donor: &Self, donor_site: usize) -> Self {
         let graft = donor.preorder(donor.subtree(donor_site), self.nodes[site].depth);
@@ -123,7 +125,7 @@ impl Tree {
         Self::of(&all)
     }
 
-    /// The nodes of a subtree, its top at `depth`.
+    /// Returns the subtasks and depths of a subtree whose top is put at `depth`.
     fn preorder(&self, subtree: Range<usize>, depth: usize) -> Vec<(SubtaskId, usize)> {
         let base = self.nodes[subtree.start].depth;
         let nodes = self.nodes[subtree].iter();
@@ -132,7 +134,7 @@ impl Tree {
             .collect()
     }
 
-    /// The tree of nodes that were taken from trees.
+    /// Makes a tree of nodes that were taken from trees.
     pub(super) fn of(preorder: &[(SubtaskId, usize)]) -> Self {
         Self::from_preorder(preorder)
             .unwrap_or_else(|| unreachable!("the depths are those of a tree"))

@@ -1,4 +1,4 @@
-//! The rules that every hierarchy obeys (Thesis 3.2).
+//! The typing rules of hierarchies (Thesis 3.2).
 
 use thiserror::Error;
 
@@ -6,10 +6,10 @@ use super::text::{MAX_TEXT_BYTES, text_bytes};
 use super::tree::Tree;
 use crate::worlds::{Catalogue, StateTypes, SubtaskId};
 
-/// Which rule a hierarchy breaks.
+/// The typing rule that a hierarchy breaks.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum TypingError {
-    /// The root is another subtask.
+    /// The tree does not begin with the root subtask.
     #[error("the root is {found}; allowed: {root}")]
     NotRoot {
         /// The subtask found.
@@ -17,7 +17,7 @@ pub enum TypingError {
         /// The subtask allowed.
         root: String,
     },
-    /// The root occurs further down.
+    /// The root subtask occurs below itself.
     #[error("{root} stands below itself; allowed: only at the top")]
     RootBelow {
         /// The root subtask.
@@ -35,7 +35,7 @@ pub enum TypingError {
         /// The primitive subtask.
         primitive: String,
     },
-    /// A child's active states do not fit its parent's.
+    /// A child's active state types do not fit those of its parent.
     #[error(
         "{child} (active in state types {child_active}) under {parent} (active in \
          {parent_active}); allowed: {}",
@@ -68,13 +68,13 @@ pub enum TypingError {
         /// Largest depth allowed.
         maximum: usize,
     },
-    /// Its text would be too long to be read again.
+    /// The text form would be too long to be read again.
     #[error("the text has {found} bytes; allowed: at most {MAX_TEXT_BYTES}")]
     TooLong {
         /// Length of the text form in bytes.
         found: usize,
     },
-    /// In some state type no subtask of the tree can act.
+    /// The root cannot act in some state type.
     #[error(
         "nothing can act in state types {missing}; allowed: a root that can act in all of them"
     )]
@@ -84,10 +84,10 @@ pub enum TypingError {
     },
 }
 
-/// Checks every rule on hierarchies.
+/// Checks a hierarchy against every typing rule.
 ///
 /// # Errors
-/// With the first rule broken, in preorder.
+/// With the first broken rule. Rules on single nodes come first, in preorder.
 pub fn check(tree: &Tree, catalogue: &Catalogue, maximum_depth: usize) -> Result<(), TypingError> {
     let root = catalogue.subtask(SubtaskId::ROOT);
     let top = catalogue.subtask(tree.subtask(0));
@@ -174,9 +174,10 @@ fn check_repeats(tree: &Tree, catalogue: &Catalogue) -> Result<(), TypingError> 
     Ok(())
 }
 
-/// For each node the state types in which it can act: a primitive where it is
-/// active, a composite where it is active, has not reached its goal, and at least one
-/// child can act.
+/// Returns the state types in which each node can act.
+///
+/// A primitive subtask can act where it is active. A composite subtask can act where it is
+/// active, its goal is not reached, and at least one child can act.
 #[must_use]
 pub fn able(tree: &Tree, catalogue: &Catalogue) -> Vec<StateTypes> {
     let mut able = vec![StateTypes::default(); tree.nodes().len()];

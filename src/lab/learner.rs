@@ -55,8 +55,8 @@ impl<'e, W: World> AnyLearner<'e, W> {
             Algorithm::QLearningRbf => finite.gaussian.unwrap_or(finite.table),
             _ => finite.table,
         };
-        let method = policy.map_or(FlatMethod::ActionValues, |policy| {
-            FlatMethod::PolicyValues(policy.clone())
+        let method = policy.map_or(FlatMethod::QLearning, |policy| {
+            FlatMethod::Td0(policy.clone())
         });
         let Experiment {
             world,

@@ -1,53 +1,41 @@
-//! MAXQ-Q (Thesis Algorithm 2.4 with Eq. 3.2 to 3.9) on one hierarchy.
-//!
-//! The recursion of the algorithm is an explicit stack of the active composite
-//! subtasks, so that a trial can be taken one time step at a time: paused, watched,
-//! ended at any moment.
-
-use rand::RngExt;
+//! An agent and its trials. What happens in a time step is in `maxq_q`.
 
 use super::Encoder;
 use super::gate::{Gate, Stopped};
 use super::hierarchy::Hierarchy;
-use super::observe::Observer;
+use super::maxq_q::Frame;
 use super::plan::Plan;
 use super::primitives::PrimitiveSet;
-use super::selection::{Softmax, uniform};
-use super::state_values::{Completion, Parameters, StateValues};
+use super::selection::Softmax;
+use super::state_values::{Parameters, StateValues};
 use super::visited::Visited;
+use crate::hierarchy::Tree;
 use crate::random::Stream;
-use crate::scenario::{CompositeChoice, LearningSettings, PrimitiveLearning};
-use crate::worlds::World;
+use crate::scenario::LearningSettings;
+use crate::worlds::{StateType, World};
 
-/// An active composite subtask.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub(super) node: usize,
-    /// The child that it has invoked last.
-    pub(super) child: usize,
-    /// How many states had been visited when it did: the child's start there.
-    pub(super) started: usize,
-}
-
-/// An agent: a hierarchy that acts in a world and learns.
+/// An agent: a hierarchy that acts in a world and learns by MAXQ-Q (Thesis Algorithm 2.4).
 #[derive(Clone, Debug)]
 pub struct Agent<'r, W: World> {
     pub(super) world: &'r W,
     pub(super) settings: &'r LearningSettings,
     pub(super) softmax: Softmax,
     pub(super) parameters: Parameters<'r>,
-    hierarchy_tree: crate::hierarchy::Tree,
+    tree: Tree,
+    /// The present state.
     pub(super) now: StateValues,
+    /// The state before the last time step.
     pub(super) before: StateValues,
-    pub(super) visited: Visited<W::Percept>,
+    pub(super) visited: Visited,
     pub(super) stack: Vec<Frame>,
-    step_limit: u32,
+    pub(super) step_limit: u32,
     /// gamma^N for N = 0, 1, ... up to the step limit.
     pub(super) discounts: Vec<f32>,
-    scratch: Vec<f32>,
+    /// Room for C~ + V of the children among which a node chooses.
+    pub(super) preferences: Vec<f32>,
 }
 
-/// A trial that is going on, or over.
+/// A trial, running or ended.
 #[derive(Clone, Debug)]
 pub struct Trial<S> {
     /// The state of the world.
@@ -56,13 +44,46 @@ pub struct Trial<S> {
     pub steps: u32,
     /// Whether the task is done.
     pub done: bool,
-    /// The sum of the primitive subtasks' rewards.
+    /// The sum of the rewards.
     pub reward: f64,
 }
 
+/// One update of C~(i, s, a) and C(i, s, a) (Thesis Eq. 3.4, 3.5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Update {
+    /// The composite node i.
+    pub node: usize,
+    /// Its child a.
+    pub child: usize,
+    /// Type of the updated state s.
+    pub state_type: StateType,
+    /// Time steps N from s to the child's termination.
+    pub steps: usize,
+    /// Target minus value of C~.
+    pub error_inside: f32,
+    /// Target minus value of C.
+    pub error_outside: f32,
+}
+
+/// Watches an agent. It cannot change what the agent does.
+///
+/// The default observer `()` sees nothing and costs nothing.
+pub trait Observer<W: World> {
+    /// A composite node chose a child.
+    fn chose(&mut self, _node: usize, _child: usize) {}
+    /// A primitive node executed an action that earned `reward` and led to `state`.
+    fn acted(&mut self, _node: usize, _action: usize, _reward: f32, _state: &W::State) {}
+    /// A composite node learned.
+    fn updated(&mut self, _update: Update) {}
+    /// A composite node terminated, at its goal or not.
+    fn terminated(&mut self, _node: usize, _at_goal: bool) {}
+}
+
+impl<W: World> Observer<W> for () {}
+
 impl<'r, W: World> Agent<'r, W> {
-    /// An agent with a hierarchy and the primitive subtasks, ready for a trial of at
-    /// most `step_limit` time steps.
+    /// Makes an agent of a hierarchy and a primitive set, for trials of at most
+    /// `step_limit` time steps.
     #[must_use]
     pub fn new(
         world: &'r W,
@@ -81,40 +102,35 @@ impl<'r, W: World> Agent<'r, W> {
             values,
             primitives,
         };
-        let situation = StateValues::new(&parameters, catalogue.terminal());
-        let mut discounts = vec![1.0_f64];
-        for power in 0..step_limit as usize {
-            discounts.push(discounts[power] * settings.discount);
-        }
+        let now = StateValues::new(&parameters, catalogue.terminal());
+        let powers = std::iter::successors(Some(1.0_f64), |power| Some(power * settings.discount));
+        let discounts = powers.map(|power| power as f32);
         Self {
             world,
             settings,
             softmax: Softmax::new(settings),
-            visited: Visited::new(&parameters.plan, settings),
+            visited: Visited::new(&parameters.plan),
             parameters,
-            hierarchy_tree: tree,
-            before: situation.clone(),
-            now: situation,
+            tree,
+            before: now.clone(),
+            now,
             stack: Vec::new(),
             step_limit,
-            discounts: discounts
-                .into_iter()
-                .map(|discount| discount as f32)
-                .collect(),
-            scratch: Vec::new(),
+            discounts: discounts.take(step_limit as usize + 1).collect(),
+            preferences: Vec::new(),
         }
     }
 
-    /// The hierarchy with what it has learned, and the primitive subtasks.
+    /// Returns the hierarchy and the primitive set with all that they have learned.
     #[must_use]
     pub fn into_parts(self) -> (Hierarchy, PrimitiveSet) {
-        let hierarchy = Hierarchy::from_parts(self.hierarchy_tree, self.parameters.values);
+        let hierarchy = Hierarchy::from_parts(self.tree, self.parameters.values);
         let hierarchy = hierarchy.unwrap_or_else(|| unreachable!("values keep their tree's shape"));
         (hierarchy, self.parameters.primitives)
     }
 
-    /// Runs a whole trial of at most `step_limit` time steps; no more than the agent was
-    /// made ready for.
+    /// Runs a whole trial of at most `step_limit` time steps. The limit given to
+    /// [`Agent::new`] holds too.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -142,7 +158,7 @@ impl<'r, W: World> Agent<'r, W> {
         self.begin_in(self.world.begin(start, rng))
     }
 
-    /// Begins a trial in a state.
+    /// Begins a trial in a given state.
     pub fn begin_in(&mut self, state: W::State) -> Trial<W::State> {
         self.visited.clear();
         self.stack.clear();
@@ -160,105 +176,9 @@ impl<'r, W: World> Agent<'r, W> {
         }
     }
 
-    /// One time step: choose down to an action, execute it, learn from where it led.
-    ///
-    /// When the trial reaches `step_limit`, or the limit that the agent was made ready
-    /// for, all subtasks return as they are: that is a
-    /// truncation, not a terminal state.
-    pub fn advance(
-        &mut self,
-        trial: &mut Trial<W::State>,
-        step_limit: u32,
-        rng: &mut Stream,
-        observer: &mut impl Observer<W>,
-    ) {
-        let Some((node, primitive)) = self.descend(rng, observer) else {
-            return;
-        };
-        if self.stack.len() > 1 {
-            self.visited.push(self.parameters.encoder, &mut self.now);
-            if let Some(percepts) = &mut self.visited.percepts {
-                percepts.push(self.world.percept(&trial.state));
-            }
-        }
-        let values = self.parameters.action_values(&mut self.now, primitive);
-        let limit = self.settings.temperature_limit as f32;
-        let action = self.softmax.choose(values, limit, rng);
-        let value = values[action];
-        let subtask = self.parameters.plan.nodes[node].subtask;
-        let reward = self.world.step(&mut trial.state, subtask, action, rng);
-        trial.steps += 1;
-        trial.reward += f64::from(reward);
-        observer.acted(node, action, reward, &trial.state);
-        std::mem::swap(&mut self.now, &mut self.before);
-        self.perceive(&trial.state);
-        trial.done = self.now.state_type == self.world.catalogue().terminal();
-        if self.settings.primitive_learning != PrimitiveLearning::Frozen {
-            let map = self.parameters.plan.nodes[node].map;
-            let features = self
-                .parameters
-                .encoder
-                .encode(map, &mut self.before.features);
-            let step = self.settings.learning_rate as f32 * (reward - value);
-            self.parameters
-                .primitives
-                .at_mut(primitive)
-                .learn(action, features, step);
-            self.before.forget_values();
-        }
-        let limit = step_limit.min(self.step_limit);
-        self.ascend(trial.steps >= limit, observer);
-    }
-
-    fn perceive(&mut self, state: &W::State) {
+    pub(super) fn perceive(&mut self, state: &W::State) {
         let percept = self.world.percept(state);
         self.now
             .load(self.world.state_type(state), percept.as_ref());
-    }
-
-    /// Algorithm 2.4, line 10, from the innermost active subtask down to a primitive
-    /// one: its node and its primitive.
-    fn descend(
-        &mut self,
-        rng: &mut Stream,
-        observer: &mut impl Observer<W>,
-    ) -> Option<(usize, usize)> {
-        loop {
-            let node = self.stack.last()?.node;
-            let child = self.choose(node, rng)?;
-            observer.chose(node, child);
-            let started = self.visited.types.len();
-            let frame = self.stack.last_mut()?;
-            frame.child = child;
-            frame.started = started;
-            if let Some(primitive) = self.parameters.plan.nodes[child].primitive {
-                return Some((child, primitive));
-            }
-            self.stack.push(Frame {
-                node: child,
-                child,
-                started,
-            });
-        }
-    }
-
-    fn choose(&mut self, node: usize, rng: &mut Stream) -> Option<usize> {
-        let choices = self.parameters.plan.choices(node, self.now.state_type);
-        if let [] | [_] = choices {
-            return choices.first().copied();
-        }
-        if self.settings.composite_choice == CompositeChoice::Random {
-            return Some(choices[uniform(rng.random(), choices.len())]);
-        }
-        self.scratch.clear();
-        for &child in choices {
-            let value = self.parameters.projected_value(&mut self.now, child);
-            let inside = self
-                .parameters
-                .completion(&mut self.now, node, child, Completion::Inside);
-            self.scratch.push(value + inside);
-        }
-        let temperature = self.parameters.temperature(node);
-        Some(choices[self.softmax.choose(&self.scratch, temperature, rng)])
     }
 }

@@ -1,17 +1,17 @@
-//! The exponential function on many single-precision numbers at once.
+//! The exponential function on vectors of single-precision numbers.
 //!
-//! `libm::expf` takes one number at a time and would be a third of a control step.
-//! This is the same method - range reduction by ln 2, then a polynomial - on
-//! vectors, with results that are the same on every processor.
+//! `libm::expf` takes one number at a time and would cost a third of a control step. This
+//! is the same method on vectors: range reduction by ln 2, then a polynomial. Results are
+//! the same on every processor.
 
 use pulp::Simd;
 use pulp::bytemuck::cast;
 
-/// Below this the exponential counts as its value here, about 1e-38.
+/// Smaller arguments are raised to this one, where the exponential is about 1e-38.
 const SMALLEST: f32 = -87.0;
-/// Above this it would overflow.
+/// Larger arguments are lowered to this one. Their exponentials would overflow.
 const LARGEST: f32 = 88.0;
-/// Adding and subtracting 1.5 * 2^23 rounds a small number to the nearest integer.
+/// 1.5 * 2^23: adding and subtracting it rounds a small number to the nearest integer.
 const ROUNDING: f32 = 12_582_912.0;
 /// ln 2 in two parts, the first with so few bits that its small multiples are exact.
 const LN2_HIGH: f32 = 0.693_359_4;
@@ -27,8 +27,9 @@ const POLYNOMIAL: [f32; 6] = [
     5e-1,
 ];
 
-/// The exponentials of some numbers, to within two units in the last place between
-/// -87 and 88; arguments outside are moved to these bounds.
+/// Returns the exponentials of `numbers`, to within two units in the last place.
+///
+/// Arguments outside -87 to 88 are moved to these bounds.
 #[inline(always)]
 pub(super) fn exponentials<S: Simd>(simd: S, numbers: S::f32s) -> S::f32s {
     let splat = |number| simd.splat_f32s(number);

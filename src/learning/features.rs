@@ -1,10 +1,11 @@
 //! Features of inputs: normalised Gaussians (Thesis Eq. 2.22), or tables.
 //!
-//! On a full grid with one width per axis the normalised features factorise into
-//! products of Gaussians over a few inputs each: five proximity sensors with two
-//! centres each need 8 + 4 exponentials, not 32. A map whose last axes are those of
-//! another map starts from its features. A table is one-hot: with it the linear
-//! approximator gives one entry of the parameters, and learns that one.
+//! On a full grid with one width for each axis, the normalised features are products of
+//! Gaussians over a few inputs each: five proximity sensors with two centres each need
+//! 8 + 4 exponentials, not 32. A map whose last axes are those of another map starts from
+//! the features of that map.
+//!
+//! A table is one-hot: the value is one parameter, and an update changes that one only.
 
 use pulp::Arch;
 
@@ -12,13 +13,13 @@ use super::grid::{Compute, Grid, Group};
 use super::linear::padded;
 use crate::worlds::{Catalogue, FeatureKind, FeatureMap, Index, MapId};
 
-/// Computes features from inputs.
+/// Computes feature vectors from inputs.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     maps: Vec<Map>,
 }
 
-/// A feature map, prepared.
+/// A feature map, prepared for computation.
 #[derive(Clone, Debug)]
 enum Map {
     Gaussian(Grid),
@@ -33,14 +34,14 @@ struct Table {
     indices: Vec<Index>,
 }
 
-/// The features of one state: each map's are computed when first asked for, and once.
+/// The feature vectors of one state. Each is computed once, when it is first needed.
 #[derive(Clone, Debug)]
 pub struct Features {
     inputs: Vec<f32>,
     /// Room for the Gaussians of one map, each group in whole lanes.
     gaussians: Vec<f32>,
     maps: Vec<Vec<f32>>,
-    /// One bit a map.
+    /// One bit for each map: whether its vector has been computed.
     ready: u64,
 }
 
@@ -61,13 +62,14 @@ impl Encoder {
         }
     }
 
-    /// Length of the feature vectors of a map, padded with zeros to whole lanes.
+    /// Returns the length of a map's feature vectors, which are padded with zeros to whole
+    /// lanes.
     #[must_use]
     pub fn width(&self, map: MapId) -> usize {
         self.maps[map.index()].width()
     }
 
-    /// Room for the features of a state.
+    /// Makes room for the features of a state.
     #[must_use]
     pub fn features(&self) -> Features {
         let gaussians = self.maps.iter().map(|map| match map {
@@ -82,7 +84,7 @@ impl Encoder {
         }
     }
 
-    /// The feature vector of a map in the state that `features` holds.
+    /// Returns the feature vector of a map in the state that `features` holds.
     #[inline]
     pub fn encode<'f>(&self, map: MapId, features: &'f mut Features) -> &'f [f32] {
         let bit = 1 << map.0;
@@ -104,7 +106,7 @@ impl Encoder {
         if let Some((base, _)) = grid.base {
             self.encode(base, features);
         }
-        // Taken out, so that the base's features can be read beside it.
+        // Taken out, so that the features of the base map can be read at the same time.
         let mut out = std::mem::take(&mut features.maps[map.index()]);
         Arch::new().dispatch(Compute {
             grid,
@@ -134,7 +136,8 @@ impl Table {
         out[self.feature(inputs)] = 1.0;
     }
 
-    /// The feature that is one; values that an input cannot have count as its last.
+    /// Returns the index of the feature that is 1. An input that is out of range counts as
+    /// its largest value.
     fn feature(&self, inputs: &[f32]) -> usize {
         let indices = self.indices.iter();
         indices.fold(0, |place, index| {
@@ -145,7 +148,7 @@ impl Table {
 }
 
 impl Features {
-    /// Holds another state from now on.
+    /// Loads the inputs of another state.
     #[inline]
     pub fn load(&mut self, inputs: &[f32]) {
         self.inputs.clear();
@@ -172,7 +175,7 @@ mod tests {
         ForagingWorld::new(&settings).unwrap()
     }
 
-    /// Equation 2.22 as it is printed, on the whole grid.
+    /// Equation 2.22 as printed, on the whole grid.
     fn by_definition(axes: &[Axis], inputs: &[f32]) -> Vec<f64> {
         let mut features = vec![1.0];
         for axis in axes {
@@ -202,7 +205,7 @@ mod tests {
             let encoder = Encoder::new(world.catalogue());
             let mut features = encoder.features();
             prop_assert_eq!(inputs.len(), INPUTS);
-            // Twice, so that nothing is left over from another state.
+            // Two states, so that a vector left over from the first would show.
             features.load(&[0.3; INPUTS]);
             encoder.encode(MapId(1), &mut features);
             features.load(&inputs);

@@ -1,8 +1,8 @@
-//! Learning without a hierarchy: TD(0), Q-learning, Q-learning with RBF features (Thesis
-//! Algorithms 2.1 to 2.3).
+//! Learning without a hierarchy: TD(0), Q-learning, and Q-learning with RBF features
+//! (Thesis Algorithms 2.1 to 2.3).
 //!
-//! All three are one loop over the linear approximator: with a table as its features it
-//! is the lookup table of Algorithms 2.1 and 2.2, with Gaussians it is Algorithm 2.3.
+//! All three are one loop with linear features: a table gives the lookup tables of
+//! Algorithms 2.1 and 2.2, Gaussians give Algorithm 2.3.
 
 use rand::RngExt;
 
@@ -15,17 +15,17 @@ use crate::scenario::LearningSettings;
 use crate::worlds::mdp::{Mdp, PolicyTable};
 use crate::worlds::{MapId, World};
 
-/// What a flat learner learns.
+/// The algorithm of a flat learner.
 #[derive(Clone, Debug)]
 pub enum FlatMethod {
-    /// V of the policy that it is given (Algorithm 2.1).
-    PolicyValues(PolicyTable),
-    /// Q of the optimal policy, choosing by softmax and epsilon-greedily (Algorithms 2.2
-    /// and 2.3).
-    ActionValues,
+    /// TD(0): learns V of the given policy (Algorithm 2.1).
+    Td0(PolicyTable),
+    /// Q-learning: learns Q of the optimal policy and chooses by softmax or epsilon-greedily
+    /// (Algorithms 2.2 and 2.3).
+    QLearning,
 }
 
-/// What came of an episode.
+/// The result of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Episode {
     /// Time steps.
@@ -47,15 +47,15 @@ pub struct FlatLearner<'r, W: World> {
     method: FlatMethod,
     softmax: Softmax,
     temperature: f32,
-    /// Parameter vectors: one an action, or a single one for V.
+    /// Parameter vectors: one for each action, or a single one for V.
     theta: Vec<Vec<f32>>,
-    /// Features of the present and of the next state.
+    /// Features of the present state; `next` has those of the next state.
     now: Features,
     next: Features,
 }
 
 impl<'r, W: World> FlatLearner<'r, W> {
-    /// A learner that knows nothing, with features of this map.
+    /// Makes a learner that has learned nothing, with the features of `map`.
     #[must_use]
     pub fn new(
         world: &'r W,
@@ -69,8 +69,8 @@ impl<'r, W: World> FlatLearner<'r, W> {
         let mut vector = vec![settings.initial_parameter as f32; width];
         vector.resize(encoder.width(map), 0.0);
         let vectors = match method {
-            FlatMethod::PolicyValues(_) => 1,
-            FlatMethod::ActionValues => finite.actions.len(),
+            FlatMethod::Td0(_) => 1,
+            FlatMethod::QLearning => finite.actions.len(),
         };
         Self {
             world,
@@ -87,8 +87,8 @@ impl<'r, W: World> FlatLearner<'r, W> {
         }
     }
 
-    /// One episode of at most `step_limit` time steps: lines 3 to 9 of Algorithm 2.1 and
-    /// 2.2, 3 to 21 of 2.3.
+    /// Runs an episode of at most `step_limit` time steps: lines 3 to 9 of Algorithms 2.1 and
+    /// 2.2, lines 3 to 21 of Algorithm 2.3.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -127,9 +127,10 @@ impl<'r, W: World> FlatLearner<'r, W> {
         Ok(episode)
     }
 
-    /// An action in the present state, of the given policy or by what has been learned.
+    /// Chooses an action in the present state: by the given policy under TD(0), else by the
+    /// learned values.
     fn choose(&mut self, rng: &mut Stream) -> usize {
-        let FlatMethod::PolicyValues(policy) = &self.method else {
+        let FlatMethod::Td0(policy) = &self.method else {
             let values = values(&self.theta, self.encoder.encode(self.map, &mut self.now));
             return self.softmax.choose(&values, self.temperature, rng);
         };
@@ -144,20 +145,19 @@ impl<'r, W: World> FlatLearner<'r, W> {
         passed.count().min(self.finite.actions.len() - 1)
     }
 
-    /// theta <- theta + alpha [r + gamma max Q(s') - Q(s, a)] phi(s), or with V.
+    /// theta <- theta + alpha [r + gamma max Q(s') - Q(s, a)] phi(s), or the same with V.
     fn learn(&mut self, action: usize, reward: f32, done: bool) {
-        let ahead = match done {
-            true => 0.0,
-            false => {
-                let features = self.encoder.encode(self.map, &mut self.next);
-                let values = values(&self.theta, features);
-                values.into_iter().fold(f32::NEG_INFINITY, f32::max)
-            }
+        let ahead = if done {
+            0.0
+        } else {
+            let features = self.encoder.encode(self.map, &mut self.next);
+            let values = values(&self.theta, features);
+            values.into_iter().fold(f32::NEG_INFINITY, f32::max)
         };
         let features = self.encoder.encode(self.map, &mut self.now);
         let theta = match self.method {
-            FlatMethod::PolicyValues(_) => &mut self.theta[0],
-            FlatMethod::ActionValues => &mut self.theta[action],
+            FlatMethod::Td0(_) => &mut self.theta[0],
+            FlatMethod::QLearning => &mut self.theta[action],
         };
         let target = reward + self.settings.discount as f32 * ahead;
         let step = self.settings.learning_rate as f32 * (target - value(theta, features));
@@ -166,7 +166,7 @@ impl<'r, W: World> FlatLearner<'r, W> {
         }
     }
 
-    /// Q of every action for what is perceived; V alone under [`FlatMethod::PolicyValues`].
+    /// Returns Q of every action for a percept; under [`FlatMethod::Td0`] V alone.
     #[must_use]
     pub fn values(&mut self, percept: &W::Percept) -> Vec<f32> {
         self.next.load(percept.as_ref());

@@ -1,11 +1,11 @@
-//! Where running work can be paused, stopped, and is counted.
+//! A gate at which running work pauses and stops, and its steps are counted.
 
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
 
 use thiserror::Error;
 
-/// The work was stopped before it was done.
+/// The error of work that was stopped before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("stopped")]
 pub struct Stopped;
@@ -16,8 +16,8 @@ const STOPPED: u8 = 2;
 
 /// A gate that all computing threads pass every few control steps.
 ///
-/// Passing an open gate is one relaxed load. While it is closed they wait; once it
-/// is stopped, and for good, they give up.
+/// Threads wait while it is closed. Once it is stopped they give up, for good. Passing an
+/// open gate costs one relaxed load.
 #[derive(Debug, Default)]
 pub struct Gate {
     state: AtomicU8,
@@ -27,10 +27,10 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// Control steps between two passes of the gate: well under a millisecond.
+    /// Control steps between two passes of the gate: well under a millisecond of work.
     pub const STRIDE: u32 = 128;
 
-    /// Passes the gate after `steps` more control steps; waits while it is closed.
+    /// Counts `steps` control steps and passes the gate; waits while it is closed.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -45,34 +45,35 @@ impl Gate {
         }
     }
 
-    /// Lets work through.
+    /// Opens the gate: work continues.
     pub fn open(&self) {
         self.set(OPEN);
     }
 
-    /// Makes work wait.
+    /// Closes the gate: work waits.
     pub fn close(&self) {
         self.set(CLOSED);
     }
 
-    /// Makes work give up, for good.
+    /// Stops all work, for good.
     pub fn stop(&self) {
         self.set(STOPPED);
     }
 
-    /// Whether work waits.
+    /// Returns whether the gate is closed.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.state.load(Ordering::Relaxed) == CLOSED
     }
 
-    /// Whether work gives up.
+    /// Returns whether work was stopped.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.state.load(Ordering::Relaxed) == STOPPED
     }
 
-    /// Control steps counted so far, for displays; it runs ahead of results.
+    /// Returns the control steps counted so far. This number, for displays, runs ahead of
+    /// the results.
     #[must_use]
     pub fn control_steps(&self) -> u64 {
         self.control_steps.load(Ordering::Relaxed)
@@ -109,7 +110,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_closed_gate_holds_work_and_a_stopped_one_ends_it() {
+    fn a_closed_gate_holds_work_and_a_stopped_gate_ends_it() {
         let gate = Gate::default();
         gate.close();
         std::thread::scope(|scope| {

@@ -1,4 +1,4 @@
-//! One feature map, factorised: Gaussians over a few inputs each, and their products.
+//! One feature map as products of Gaussians over a few inputs each.
 
 use pulp::{Simd, WithSimd};
 
@@ -6,36 +6,38 @@ use super::exponential::exponentials;
 use super::linear::{padded, total};
 use crate::worlds::{Axis, FeatureMap, MapId};
 
-/// Gaussians that are computed at once. Axes are taken together as long as they have
-/// no more than this many: enough to fill a vector, few enough to save exponentials.
+/// Gaussians that are computed at once.
+///
+/// Axes form one group as long as they have no more Gaussians than this: enough to fill
+/// a vector, few enough to save exponentials.
 const LANES: usize = 8;
 
-/// What one input adds to the exponents of eight Gaussians.
+/// The term that one input adds to the exponents of eight Gaussians.
 #[derive(Clone, Debug)]
 struct Term {
     input: usize,
-    /// Infinity where there is no Gaussian.
+    /// Infinity in lanes without a Gaussian.
     centres: [f32; LANES],
     /// -1 / (2 sigma^2).
     exponent: f32,
 }
 
-/// Gaussians over the axes of a group, the last one varying fastest.
+/// Gaussians over the axes of a group, the last axis varying fastest.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
     size: usize,
-    /// For every eight Gaussians one term an axis.
+    /// For every eight Gaussians one term for each axis.
     terms: Vec<Vec<Term>>,
 }
 
-/// A feature map, prepared.
+/// A feature map, prepared for computation.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     /// Padded number of features.
     pub(super) width: usize,
     /// The map whose features the grid starts from, and their number.
     pub(super) base: Option<(MapId, usize)>,
-    /// The remaining axes in groups, the group varying fastest first.
+    /// The remaining axes in groups, the fastest varying group first.
     pub(super) groups: Vec<Group>,
 }
 
@@ -66,7 +68,7 @@ impl Grid {
     }
 }
 
-/// Number of Gaussians on the grid of some axes.
+/// Returns the number of Gaussians on the grid of some axes.
 fn size(axes: &[Axis]) -> usize {
     axes.iter().map(|axis| axis.centres).product()
 }
@@ -77,9 +79,12 @@ impl Group {
         let term = |first: usize, axis: usize| {
             let period: usize = self::size(&axes[axis + 1..]);
             let axis = &axes[axis];
-            let centre = |gaussian: usize| match gaussian {
-                _ if gaussian >= size => f32::INFINITY,
-                _ => (gaussian / period % axis.centres) as f32 / (axis.centres - 1) as f32,
+            let centre = |gaussian: usize| {
+                if gaussian < size {
+                    (gaussian / period % axis.centres) as f32 / (axis.centres - 1) as f32
+                } else {
+                    f32::INFINITY
+                }
             };
             Term {
                 input: axis.input,
@@ -96,7 +101,7 @@ impl Group {
         }
     }
 
-    /// Number of Gaussians, padded to whole lanes.
+    /// Returns the number of Gaussians, padded to whole lanes.
     pub(super) fn lanes(&self) -> usize {
         self.terms.len() * LANES
     }
@@ -177,7 +182,7 @@ impl WithSimd for Compute<'_> {
     }
 }
 
-/// Multiplies the first `width` numbers by each factor, one block a factor.
+/// Multiplies the first `width` numbers by each factor, giving one block for each factor.
 #[inline(always)]
 fn extend<S: Simd>(simd: S, out: &mut [f32], width: usize, factors: &[f32]) {
     let (base, mut rest) = out.split_at_mut(width);

@@ -1,20 +1,20 @@
-//! A hierarchy with what it has learned: the whole of an individual.
+//! A hierarchy with its learned values.
 
 use super::linear::padded;
 use crate::hierarchy::Tree;
 use crate::scenario::LearningSettings;
 use crate::worlds::{Catalogue, SubtaskId};
 
-/// What a composite subtask has learned: its temperature and, for each child, the
+/// The learned values of a composite subtask: its temperature and, for each child, the
 /// parameters of the completion functions C~ and C (Thesis Eq. 3.7, 3.8).
 ///
-/// A parameter vector has the blocks of features that the catalogue says
+/// A parameter vector consists of the blocks that the catalogue gives the subtask
 /// ([`Blocks`](crate::worlds::Blocks)), each padded to whole lanes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompositeValues {
     /// Temperature of softmax selection.
     pub temperature: f32,
-    /// For each child C~ and then C.
+    /// For each child the vector of C~, then that of C.
     pub(super) parameters: Vec<f32>,
     /// For each child.
     layouts: Vec<Layout>,
@@ -40,14 +40,14 @@ impl Layout {
         padded(self.width)
     }
 
-    /// Length of one padded parameter vector.
+    /// Returns the length of one padded parameter vector.
     fn vector(self) -> usize {
         self.blocks * self.stride()
     }
 }
 
 impl CompositeValues {
-    /// A subtask with these children that has learned nothing.
+    /// Makes the values of a subtask that has learned nothing.
     #[must_use]
     pub fn new(
         subtask: SubtaskId,
@@ -71,8 +71,9 @@ impl CompositeValues {
         values
     }
 
-    /// A subtask with the given parameter vectors, C~ and C for each of these children;
-    /// `None` if their number or lengths are not those of the catalogue.
+    /// Makes the values of a subtask from parameter vectors, C~ and C for each child.
+    ///
+    /// Returns `None` if their number or lengths do not fit the catalogue.
     #[must_use]
     pub fn from_vectors(
         subtask: SubtaskId,
@@ -105,7 +106,7 @@ impl CompositeValues {
         })
     }
 
-    /// The parameter vectors, C~ and C for each child, without padding.
+    /// Returns the parameter vectors, C~ and C for each child, without padding.
     #[must_use]
     pub fn vectors(&self) -> Vec<[Vec<f32>; 2]> {
         let mut rest = &*self.parameters;
@@ -123,12 +124,12 @@ impl CompositeValues {
     }
 
     fn is_finite(&self) -> bool {
-        // Without a way out in the middle, so that it runs on vectors.
+        // No early return, so that the loop vectorises.
         let parameters = self.parameters.iter();
         parameters.fold(true, |finite, parameter| finite & parameter.is_finite())
     }
 
-    /// Number of children.
+    /// Returns the number of children.
     #[must_use]
     pub fn children(&self) -> usize {
         self.layouts.len()
@@ -144,7 +145,7 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// A hierarchy that has learned nothing.
+    /// Makes a hierarchy that has learned nothing.
     #[must_use]
     pub fn new(tree: Tree, catalogue: &Catalogue, learning: &LearningSettings) -> Self {
         let value = |node| {
@@ -157,8 +158,9 @@ impl Hierarchy {
         Self { tree, values }
     }
 
-    /// A hierarchy with these values in the order of the nodes; `None` if they are
-    /// not the values of this tree.
+    /// Makes a hierarchy from values in the order of the nodes.
+    ///
+    /// Returns `None` if the values do not fit the tree.
     #[must_use]
     pub fn from_parts(tree: Tree, values: Vec<Option<CompositeValues>>) -> Option<Self> {
         let fits = tree.nodes().len() == values.len()
@@ -169,26 +171,26 @@ impl Hierarchy {
         fits.then_some(Self { tree, values })
     }
 
-    /// The tree and the values in the order of its nodes.
+    /// Returns the tree and the values in the order of its nodes.
     #[must_use]
     pub fn into_parts(self) -> (Tree, Vec<Option<CompositeValues>>) {
         (self.tree, self.values)
     }
 
-    /// The structure.
+    /// Returns the tree.
     #[must_use]
     pub fn tree(&self) -> &Tree {
         &self.tree
     }
 
-    /// Whether every learned value is a finite number; otherwise learning has diverged.
+    /// Returns whether every learned value is finite. Otherwise learning has diverged.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         let mut values = self.values.iter().flatten();
         values.all(CompositeValues::is_finite)
     }
 
-    /// The learned values in the order of the nodes; `None` for primitive subtasks.
+    /// Returns the learned values in the order of the nodes, `None` for primitive subtasks.
     #[must_use]
     pub fn values(&self) -> &[Option<CompositeValues>] {
         &self.values

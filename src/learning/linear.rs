@@ -1,20 +1,21 @@
 //! The linear approximator: value = parameters . features (Thesis Eq. 2.20).
 //!
-//! The loops run on the widest vectors that the processor has, chosen at run time by
-//! `pulp`. Lane l of 32 holds the sum over the features l, l + 32, ... and the
-//! lanes are added in a fixed tree, so the result is the same on every vector width.
+//! The loops run on the widest vectors of the processor, which `pulp` chooses at run time.
+//! Lane l of 32 holds the sum over the features l, l + 32, ..., and the lanes are added in
+//! a fixed tree, so the result is the same for every vector width.
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Sums run over this many lanes, whatever vectors the processor has.
+/// The number of lanes of a sum, whatever vectors the processor has.
 const LANES: usize = 32;
 
-/// `width` rounded up to whole groups of lanes; vectors are padded with zeros to it.
+/// Returns `width` rounded up to whole groups of lanes. Vectors are padded with zeros to
+/// this length.
 pub(super) fn padded(width: usize) -> usize {
     width.next_multiple_of(LANES)
 }
 
-/// The value of a parameter vector for a feature vector of the same padded length.
+/// Returns the value of a parameter vector for a feature vector of the same padded length.
 #[inline]
 pub(super) fn value(parameters: &[f32], features: &[f32]) -> f32 {
     Arch::new().dispatch(Value {
@@ -26,13 +27,14 @@ pub(super) fn value(parameters: &[f32], features: &[f32]) -> f32 {
 /// The parameters of several vectors for one feature.
 pub(super) type Row = [f32; ROW];
 
-/// Vectors that are evaluated at once.
+/// Parameter vectors that are evaluated at once.
 pub(super) const ROW: usize = 8;
 
-/// Features that are taken at once: sums that do not wait for one another.
+/// Features that are processed at once, in sums that do not depend on each other.
 pub(super) const STRIDE: usize = 4;
 
-/// The values of up to eight parameter vectors, given by the rows of the features.
+/// Returns the values of up to eight parameter vectors, which are given as one row for
+/// each feature.
 #[inline]
 pub(super) fn values(rows: &[Row], features: &[f32]) -> Row {
     Arch::new().dispatch(Values { rows, features })
@@ -86,8 +88,7 @@ impl WithSimd for Values<'_> {
     }
 }
 
-/// Gradient steps on C~ and C of a child of a composite subtask, for states one
-/// before the other.
+/// Gradient steps on C~ and C of a child, in successive states.
 pub(super) struct Replay<'a, F> {
     /// The parameters of C~ and of C.
     pub(super) parameters: [&'a mut [f32]; 2],
@@ -95,10 +96,10 @@ pub(super) struct Replay<'a, F> {
     pub(super) features: &'a [f32],
     /// The discount for each state, the most recent state first.
     pub(super) discounts: &'a [f32],
-    /// What C~ and C are to be, not discounted.
+    /// The targets of C~ and C before they are discounted.
     pub(super) targets: [f32; 2],
     pub(super) learning_rate: f32,
-    /// Is told how many states were more recent, and the errors of C~ and C.
+    /// Called with the number of more recent states and the errors of C~ and C.
     pub(super) watch: F,
 }
 
@@ -132,16 +133,16 @@ impl<F: FnMut(usize, [f32; 2])> WithSimd for Replay<'_, F> {
     }
 }
 
-/// Registers that make up all lanes.
+/// Returns the number of registers that make up all lanes.
 #[inline(always)]
 fn registers<S: Simd>() -> usize {
     LANES / S::F32_LANES
 }
 
-/// The scalar product of two vectors of the same padded length.
+/// Returns the scalar product of two vectors of the same padded length.
 #[inline(always)]
 fn dot<S: Simd>(simd: S, parameters: &[f32], features: &[f32]) -> f32 {
-    // Spelled out in registers: the compiler alone makes half-empty vectors of it.
+    // Written in registers: left alone, the compiler makes half-empty vectors of it.
     let mut sums = [simd.splat_f32s(0.0); LANES];
     let parameters = S::as_simd_f32s(parameters).0;
     let features = S::as_simd_f32s(features).0;
@@ -156,8 +157,8 @@ fn dot<S: Simd>(simd: S, parameters: &[f32], features: &[f32]) -> f32 {
     total(simd, &mut sums[..registers::<S>()])
 }
 
-/// The sum over all lanes of some registers, a power of two of them, added in a fixed
-/// tree.
+/// Returns the sum over all lanes of some registers, added in a fixed tree. The number of
+/// registers is a power of two.
 #[inline(always)]
 pub(super) fn total<S: Simd>(simd: S, sums: &mut [S::f32s]) -> f32 {
     let mut width = sums.len();

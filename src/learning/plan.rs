@@ -1,4 +1,4 @@
-//! What an agent needs to know of a tree at every step, worked out once.
+//! What an agent needs to know of its tree at every step, computed once.
 
 use crate::hierarchy::{Tree, able};
 use crate::worlds::{Catalogue, MapId, StateType, StateTypes, SubtaskId};
@@ -13,7 +13,7 @@ pub(super) struct PlanNode {
     pub(super) parent: Option<usize>,
     /// Its parent's completion functions for it.
     pub(super) completion: CompletionPlan,
-    /// The place among the catalogue's primitives; `None` for a composite subtask.
+    /// Its place in the primitive set; `None` for a composite subtask.
     pub(super) primitive: Option<usize>,
 }
 
@@ -31,12 +31,12 @@ pub(super) struct CompletionPlan {
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) nodes: Vec<PlanNode>,
-    /// For each node and state type, the terminal one too, the end of its choices.
+    /// For each node and state type, with the terminal one: the end of its choices.
     ends: Vec<usize>,
-    /// For each node and state type, where the C~ of the node lies in its parent's
+    /// For each node and state type: where the C~ of the node lies in its parent's
     /// parameters.
     blocks: Vec<usize>,
-    /// The children that can act, one list after the other.
+    /// The lists of children that can act, one after the other.
     children: Vec<usize>,
     types: usize,
 }
@@ -88,31 +88,32 @@ impl Plan {
         plan
     }
 
-    /// The children among which a composite subtask chooses in a state type; none
-    /// where the subtask terminates.
+    /// Returns the children among which a composite subtask chooses in a state type. There
+    /// are none where the subtask terminates.
     #[inline(always)]
     pub(super) fn choices(&self, node: usize, state_type: StateType) -> &[usize] {
         let list = node * self.types + usize::from(state_type.0);
         &self.children[self.ends[list]..self.ends[list + 1]]
     }
 
-    /// Whether all these nodes are the same primitive subtask: then it does not matter
-    /// which is chosen.
+    /// Returns whether all these nodes are the same primitive subtask, so that it does not
+    /// matter which one is chosen.
     pub(super) fn leads_to_one_primitive(&self, nodes: &[usize]) -> bool {
         let primitive = |node: &usize| self.nodes[*node].primitive;
         let first = nodes.first().and_then(primitive);
         first.is_some() && nodes.iter().all(|node| primitive(node) == first)
     }
 
-    /// Whether a subtask can act in a state type.
+    /// Returns whether a subtask can act in a state type.
     pub(super) fn can_act(&self, node: usize, state_type: StateType) -> bool {
-        match self.nodes[node].primitive {
-            Some(_) => self.nodes[node].active.contains(state_type),
-            None => !self.choices(node, state_type).is_empty(),
+        if self.nodes[node].primitive.is_some() {
+            self.nodes[node].active.contains(state_type)
+        } else {
+            !self.choices(node, state_type).is_empty()
         }
     }
 
-    /// Where the C~ of `child` lies in its parent's parameters for a state type; the
+    /// Returns where the C~ of `child` lies in its parent's parameters for a state type. Its
     /// C lies one parameter vector further on.
     #[inline(always)]
     pub(super) fn block(&self, child: usize, state_type: StateType) -> usize {

@@ -1,17 +1,17 @@
-//! What a hierarchy would do in a state, whatever led there.
+//! The policy of a hierarchy: what it would do in a given state.
 
 use super::agent::Agent;
-use super::explain::Choice;
+use super::explanation::Choice;
 use super::features::Encoder;
 use super::hierarchy::Hierarchy;
 use super::plan::Plan;
 use super::primitives::PrimitiveSet;
 use super::selection::{SelectionRule, Softmax};
-use super::state_values::{Completion, Parameters, StateValues};
+use super::state_values::{Parameters, StateValues};
 use crate::scenario::{CompositeChoice, LearningSettings};
 use crate::worlds::{Catalogue, StateType, SubtaskId, World};
 
-/// The policy of a hierarchy, to be asked about any state.
+/// The policy of a hierarchy, which can be queried in any state.
 #[derive(Clone, Debug)]
 pub struct Policy<'r> {
     parameters: Parameters<'r>,
@@ -21,17 +21,17 @@ pub struct Policy<'r> {
     walk: Walk,
 }
 
-/// The walk down a hierarchy, along all its choices.
+/// A walk down a hierarchy along all its choices.
 #[derive(Clone, Debug)]
 struct Walk {
     /// The probability of each primitive subtask so far.
     totals: Vec<f64>,
-    /// The probabilities of the choices of all nodes from the root to where the walk is.
+    /// The probabilities of the choices of all nodes from the root to the present one.
     shares: Vec<f64>,
-    /// The values of one node's choices.
-    values: Vec<f32>,
+    /// C~ + V of one node's choices.
+    preferences: Vec<f32>,
     /// Their probabilities.
-    chances: Vec<f32>,
+    probabilities: Vec<f32>,
 }
 
 impl Walk {
@@ -39,29 +39,26 @@ impl Walk {
         Self {
             totals: vec![0.0; primitives],
             shares: Vec::new(),
-            values: Vec::new(),
-            chances: Vec::new(),
+            preferences: Vec::new(),
+            probabilities: Vec::new(),
         }
     }
 }
 
 impl<'r, W: World> Agent<'r, W> {
-    /// The agent's policy as it is now.
+    /// Returns the agent's present policy.
     #[must_use]
     pub fn policy(&self) -> Policy<'r> {
-        let parameters = self.parameters.clone();
-        Policy {
-            now: StateValues::new(&parameters, self.world.catalogue().terminal()),
-            walk: Walk::among(parameters.primitives.all().len()),
-            softmax: self.softmax,
-            settings: self.settings,
-            parameters,
-        }
+        Policy::of(
+            self.parameters.clone(),
+            self.world.catalogue(),
+            self.settings,
+        )
     }
 }
 
 impl<'r> Policy<'r> {
-    /// The policy of a hierarchy with these primitive subtasks.
+    /// Makes the policy of a hierarchy with the given primitive set.
     #[must_use]
     pub fn new(
         catalogue: &Catalogue,
@@ -77,18 +74,27 @@ impl<'r> Policy<'r> {
             values,
             primitives: primitives.clone(),
         };
+        Self::of(parameters, catalogue, settings)
+    }
+
+    fn of(
+        parameters: Parameters<'r>,
+        catalogue: &Catalogue,
+        settings: &'r LearningSettings,
+    ) -> Self {
         Self {
             now: StateValues::new(&parameters, catalogue.terminal()),
-            walk: Walk::among(primitives.all().len()),
+            walk: Walk::among(parameters.primitives.all().len()),
             softmax: Softmax::new(settings),
             settings,
             parameters,
         }
     }
 
-    /// The action that the hierarchy would choose without exploring, by the largest
-    /// C~ + V from the root down and the largest Q_prim at its end: the primitive subtask
-    /// and the index of the action; `None` where the root cannot act.
+    /// Returns the primitive subtask and the action that the hierarchy would choose without
+    /// exploring: the largest C~ + V from the root down, then the largest Q_prim.
+    ///
+    /// Returns `None` where the root cannot act.
     pub fn greedy(&mut self) -> Option<(SubtaskId, usize)> {
         let mut node = 0;
         while self.parameters.plan.nodes[node].primitive.is_none() {
@@ -104,36 +110,37 @@ impl<'r> Policy<'r> {
         Some((self.parameters.plan.nodes[node].subtask, action))
     }
 
-    /// Looks at another state from now on.
+    /// Moves to another state, to which all further queries refer.
     pub fn look(&mut self, state_type: StateType, inputs: &[f32]) {
         self.now.load(state_type, inputs);
     }
 
-    /// Adds to `totals` the probability with which the policy, followed from the root
-    /// down, ends in each primitive subtask, in the catalogue's order.
+    /// Adds to `totals` the probability of ending in each primitive subtask, in the
+    /// catalogue's order, when the policy is followed from the root down.
     pub fn add_probabilities(&mut self, totals: &mut [f64]) {
         self.walk.totals.copy_from_slice(totals);
         self.descend(0, 1.0);
         totals.copy_from_slice(&self.walk.totals);
     }
 
-    /// V(root, s); 0 in a state in which the root cannot act.
+    /// Returns V(root, s), or 0 where the root cannot act.
     pub fn value(&mut self) -> f32 {
-        match self.parameters.plan.can_act(0, self.now.state_type) {
-            true => self.parameters.projected_value(&mut self.now, 0),
-            false => 0.0,
+        if self.parameters.plan.can_act(0, self.now.state_type) {
+            self.parameters.projected_value(&mut self.now, 0)
+        } else {
+            0.0
         }
     }
 
-    /// The children that a composite node can choose among, and how it does; none where
-    /// it cannot act.
+    /// Returns how a composite node chooses, and the children to choose from. There are none
+    /// where it cannot act.
     pub fn choices(&mut self, node: usize) -> (SelectionRule, Vec<Choice>) {
         self.parameters
             .choices(&mut self.now, node, self.softmax, self.settings)
     }
 
-    /// Q_prim of every action of the primitive subtask at a place in the catalogue's
-    /// order.
+    /// Returns Q_prim of every action of a primitive subtask, given by its place in the
+    /// catalogue's order.
     pub fn action_values(&mut self, primitive: usize) -> &[f32] {
         self.parameters.action_values(&mut self.now, primitive)
     }
@@ -155,14 +162,14 @@ impl<'r> Policy<'r> {
         self.walk.shares.truncate(first);
     }
 
-    /// Puts the probabilities of a node's choices on top of those of the nodes above it.
+    /// Appends the probabilities of a node's choices to those of the nodes above it.
     fn push_shares(&mut self, node: usize) {
         let choices = self.parameters.plan.choices(node, self.now.state_type);
         let random = self.settings.composite_choice == CompositeChoice::Random;
         let Walk {
             shares,
-            values,
-            chances,
+            preferences,
+            probabilities,
             ..
         } = &mut self.walk;
         let count = choices.len();
@@ -170,17 +177,14 @@ impl<'r> Policy<'r> {
             shares.resize(shares.len() + count, 1.0 / count as f64);
             return;
         }
-        values.clear();
+        preferences.clear();
         for &child in choices {
-            let projected = self.parameters.projected_value(&mut self.now, child);
-            let inside = self
-                .parameters
-                .completion(&mut self.now, node, child, Completion::Inside);
-            values.push(projected + inside);
+            preferences.push(self.parameters.preference(&mut self.now, node, child));
         }
-        chances.resize(count, 0.0);
+        probabilities.resize(count, 0.0);
+        let temperature = self.parameters.temperature(node);
         self.softmax
-            .probabilities(values, self.parameters.temperature(node), chances);
-        shares.extend(chances.iter().copied().map(f64::from));
+            .probabilities(preferences, temperature, probabilities);
+        shares.extend(probabilities.iter().copied().map(f64::from));
     }
 }

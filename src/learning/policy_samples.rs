@@ -1,4 +1,5 @@
-//! Which primitive subtasks a hierarchy selects (Thesis 4.5.4).
+//! Selection probabilities: how often a hierarchy ends in each primitive subtask (Thesis
+//! 4.5.4).
 
 use super::features::Encoder;
 use super::gate::{Gate, Stopped};
@@ -9,18 +10,18 @@ use crate::random::Stream;
 use crate::scenario::LearningSettings;
 use crate::worlds::World;
 
-/// Sampled states of each type, in which policies are measured.
+/// Sampled states of each type, in which selection probabilities are computed.
 #[derive(Clone, Debug)]
 pub struct PolicySamples<P> {
     by_type: Vec<Vec<P>>,
 }
 
-/// For each state type the probability with which each primitive subtask, in the
-/// catalogue's order, is selected; `None` where no state of the type was found.
+/// For each state type the probability of selecting each primitive subtask, in the
+/// catalogue's order; `None` where no state of the type was found.
 pub type SelectionProbabilities = Vec<Option<Vec<f64>>>;
 
 impl<P: Copy + AsRef<[f32]>> PolicySamples<P> {
-    /// Samples `count` states of each type; fewer where they are hard to find.
+    /// Samples `count` states of each type, or fewer where states are hard to find.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -45,8 +46,7 @@ impl<P: Copy + AsRef<[f32]>> PolicySamples<P> {
         Ok(Self { by_type })
     }
 
-    /// The probabilities with which the policy of a hierarchy, followed from the root
-    /// down, ends in each primitive subtask, averaged over the sampled states.
+    /// Returns the selection probabilities of a hierarchy, averaged over the sampled states.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -79,7 +79,7 @@ impl<P: Copy + AsRef<[f32]>> PolicySamples<P> {
     }
 }
 
-/// The average of several hierarchies' probabilities.
+/// Returns the average of several hierarchies' selection probabilities.
 #[must_use]
 pub fn average(all: &[SelectionProbabilities]) -> SelectionProbabilities {
     let Some(first) = all.first() else {

@@ -14,33 +14,34 @@ pub struct PrimitiveValues {
     /// Number of features.
     width: usize,
     actions: usize,
-    /// One parameter vector an action.
+    /// One parameter vector for each action.
     parameters: Vec<f32>,
-    /// The same parameters for evaluation: for every eight actions one row a feature,
+    /// The same parameters for evaluation: for every eight actions one row for each feature,
     /// in whole strides.
     rows: Vec<Row>,
 }
 
-/// All primitive subtasks: the one copy that a population shares (Thesis 3.1), or an
-/// individual's own.
+/// The learned values of all primitive subtasks: the one copy that a population shares
+/// (Thesis 3.1), or an individual's own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrimitiveSet {
     primitives: Vec<PrimitiveValues>,
 }
 
 impl PrimitiveValues {
-    /// A subtask that has learned nothing: every parameter at its initial value.
+    /// Makes the values of a subtask that has learned nothing: every parameter is `initial`.
     #[must_use]
     pub fn new(subtask: SubtaskId, catalogue: &Catalogue, initial: f32) -> Self {
         let width = catalogue.width(subtask);
         let actions = catalogue.subtask(subtask).actions();
         let vector = vec![initial; width];
         Self::from_vectors(subtask, catalogue, &vec![vector; actions])
-            .unwrap_or_else(|| unreachable!("the vectors were made to measure"))
+            .unwrap_or_else(|| unreachable!("the vectors have the catalogue's lengths"))
     }
 
-    /// A subtask with the given parameter vectors, one an action; `None` if their
-    /// number or lengths are not those of the catalogue.
+    /// Makes the values of a subtask from parameter vectors, one for each action.
+    ///
+    /// Returns `None` if their number or lengths do not fit the catalogue.
     #[must_use]
     pub fn from_vectors(
         subtask: SubtaskId,
@@ -66,12 +67,12 @@ impl PrimitiveValues {
         fits.then_some(primitive)
     }
 
-    /// The parameter vectors, one an action.
+    /// Returns the parameter vectors, one for each action.
     pub fn vectors(&self) -> impl Iterator<Item = &[f32]> {
         self.parameters.chunks_exact(self.width)
     }
 
-    /// Whether every parameter is a finite number; otherwise learning has diverged.
+    /// Returns whether every parameter is finite. Otherwise learning has diverged.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.parameters
@@ -79,7 +80,7 @@ impl PrimitiveValues {
             .all(|parameter| parameter.is_finite())
     }
 
-    /// Room for Q_prim of every action.
+    /// Makes room for Q_prim of every action.
     pub(super) fn values(&self) -> Vec<Row> {
         vec![[0.0; ROW]; self.actions.div_ceil(ROW)]
     }
@@ -107,7 +108,7 @@ impl PrimitiveValues {
         }
     }
 
-    /// One gradient step on an action's value (Thesis Eq. 3.6).
+    /// Takes one gradient step on an action's value (Thesis Eq. 3.6).
     pub(super) fn learn(&mut self, action: usize, features: &[f32], step: f32) {
         let group = action / ROW * self.rows_per_group();
         let vector = &mut self.parameters[action * self.width..][..self.width];
@@ -118,7 +119,7 @@ impl PrimitiveValues {
         }
     }
 
-    /// Q_prim of every action for the inputs of a state.
+    /// Returns Q_prim of every action for the inputs of a state.
     #[must_use]
     pub fn action_values(&self, encoder: &Encoder, inputs: &[f32]) -> Vec<f32> {
         let mut features = encoder.features();
@@ -129,8 +130,9 @@ impl PrimitiveValues {
 }
 
 impl PrimitiveSet {
-    /// The given primitives, one for each primitive subtask of the catalogue; `None` if
-    /// they are not these.
+    /// Makes a set of the values of every primitive subtask, in the catalogue's order.
+    ///
+    /// Returns `None` if a subtask is missing, surplus or out of order.
     #[must_use]
     pub fn new(primitives: Vec<PrimitiveValues>, catalogue: &Catalogue) -> Option<Self> {
         let complete = primitives
@@ -140,7 +142,7 @@ impl PrimitiveSet {
         complete.then_some(Self { primitives })
     }
 
-    /// PrimitiveSet that have learned nothing.
+    /// Makes a set that has learned nothing.
     #[must_use]
     pub fn untrained(catalogue: &Catalogue, settings: &LearningSettings) -> Self {
         let initial = settings.initial_parameter as f32;
@@ -152,13 +154,13 @@ impl PrimitiveSet {
         }
     }
 
-    /// All primitives in the order of the catalogue's primitive subtasks.
+    /// Returns the values of all primitive subtasks, in the catalogue's order.
     #[must_use]
     pub fn all(&self) -> &[PrimitiveValues] {
         &self.primitives
     }
 
-    /// The primitive at a place in that order.
+    /// Returns the values at a place in that order.
     pub(super) fn at_mut(&mut self, index: usize) -> &mut PrimitiveValues {
         &mut self.primitives[index]
     }

@@ -1,4 +1,4 @@
-//! Softmax action selection with the epsilon-greedy switch (Thesis Eq. 2.12, 3.1).
+//! Softmax selection that switches to epsilon-greedy selection (Thesis Eq. 2.12, 3.1).
 
 use pulp::{Arch, Simd, WithSimd};
 use rand::RngExt;
@@ -7,34 +7,35 @@ use super::exponential::exponentials;
 use crate::random::Stream;
 use crate::scenario::LearningSettings;
 
-/// Few children, few actions: more lanes would mostly be empty.
+/// Lanes of a vector. There are few children and few actions: more lanes would mostly be
+/// empty.
 const LANES: usize = 8;
 
-/// How one of several is chosen in a state.
+/// The rule by which one of several children or actions is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelectionRule {
-    /// There is no other.
+    /// There is only one to choose.
     OnlyChoice,
-    /// All alike: the control `composite_choice: random`.
+    /// All are equally likely: the control `composite_choice: random`.
     Uniform,
-    /// By softmax (Thesis Eq. 2.12).
+    /// Softmax (Thesis Eq. 2.12).
     Softmax,
-    /// Epsilon-greedy, as the largest softmax probability exceeds the limit.
+    /// Epsilon-greedy, because the largest softmax probability exceeds the limit.
     EpsilonGreedy,
 }
 
-/// Softmax selection that gives way to epsilon-greedy selection where the largest
-/// probability exceeds a limit.
+/// Softmax selection, replaced by epsilon-greedy selection where the largest probability
+/// exceeds a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softmax {
-    /// Largest probability (rho limit) that softmax may give.
+    /// The largest probability that softmax may give (rho limit).
     pub probability_limit: f32,
-    /// Probability of a random choice otherwise.
+    /// The probability of a random choice in epsilon-greedy selection.
     pub epsilon: f32,
 }
 
 impl Softmax {
-    /// The selection of a scenario.
+    /// Makes the selection of a scenario.
     #[must_use]
     pub fn new(settings: &LearningSettings) -> Self {
         Self {
@@ -43,8 +44,8 @@ impl Softmax {
         }
     }
 
-    /// Chooses one of `values` at a temperature; one random number is drawn.
-    /// `values` is not empty.
+    /// Chooses one of `values` at a temperature, with one random number. `values` must not
+    /// be empty.
     #[inline]
     pub fn choose(&self, values: &[f32], temperature: f32, rng: &mut Stream) -> usize {
         let draw = rng.random::<f32>();
@@ -54,21 +55,21 @@ impl Softmax {
         self.pick(values, &mut few_in_lanes(values), temperature, draw)
     }
 
-    /// Writes the probability with which each of `values` is chosen, and says by which
-    /// rule.
+    /// Writes the probability of choosing each of `values` to `out`, and returns the rule.
     pub fn probabilities(
         &self,
         values: &[f32],
         temperature: f32,
         out: &mut [f32],
     ) -> SelectionRule {
-        match values.len() > LANES {
-            true => self.weigh(values, &mut in_lanes(values), temperature, out),
-            false => self.weigh(values, &mut few_in_lanes(values), temperature, out),
+        if values.len() > LANES {
+            self.weigh(values, &mut in_lanes(values), temperature, out)
+        } else {
+            self.weigh(values, &mut few_in_lanes(values), temperature, out)
         }
     }
 
-    /// Writes the probabilities of `values`, which `weights` holds in whole lanes.
+    /// Writes the probabilities of `values`. `weights` holds the same values in whole lanes.
     fn weigh(
         &self,
         values: &[f32],
@@ -91,12 +92,12 @@ impl Softmax {
         }
     }
 
-    /// Whether the largest probability, which has weight 1, exceeds the limit.
+    /// Returns whether the largest probability exceeds the limit. Its weight is 1.
     fn is_greedy(&self, sum: f32) -> bool {
         1.0 / sum > self.probability_limit
     }
 
-    /// Chooses one of `values`, which `weights` holds in whole lanes.
+    /// Chooses one of `values`. `weights` holds the same values in whole lanes.
     #[inline(always)]
     fn pick(&self, values: &[f32], weights: &mut [f32], temperature: f32, draw: f32) -> usize {
         boltzmann(weights, temperature);
@@ -112,7 +113,7 @@ impl Softmax {
                 greedy(values)
             };
         }
-        // Counted, not searched: no processor can predict where a search would end.
+        // Counted, not searched: the end of a search could not be predicted.
         let passed = weights
             .iter()
             .map(|&sum_so_far| usize::from(sum_so_far <= draw * sum));
@@ -120,20 +121,20 @@ impl Softmax {
     }
 }
 
-/// The index that a uniform draw from [0, 1) falls on.
+/// Returns the index that a uniform draw from [0, 1) falls on.
 #[inline(always)]
 pub(super) fn uniform(draw: f32, count: usize) -> usize {
     ((draw * count as f32) as usize).min(count - 1)
 }
 
-/// The values in whole lanes, the empty ones as unlikely as can be.
+/// Returns the values in whole lanes. Empty lanes have probability 0.
 fn in_lanes(values: &[f32]) -> Vec<f32> {
     let mut lanes = values.to_vec();
     lanes.resize(values.len().next_multiple_of(LANES), f32::NEG_INFINITY);
     lanes
 }
 
-/// The same for no more values than lanes, without asking for memory.
+/// The same for at most as many values as lanes, without an allocation.
 #[inline(always)]
 fn few_in_lanes(values: &[f32]) -> [f32; LANES] {
     let mut lanes = [f32::NEG_INFINITY; LANES];
@@ -173,7 +174,7 @@ impl WithSimd for Boltzmann<'_> {
     }
 }
 
-/// The place of the largest value, the first of equals.
+/// Returns the index of the largest value, the first of equals.
 #[inline(always)]
 fn greedy(values: &[f32]) -> usize {
     let mut best = 0;

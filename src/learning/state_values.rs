@@ -1,4 +1,6 @@
-//! The values of a whole hierarchy in one state, each computed when first needed.
+//! The values of a whole hierarchy in one state: Algorithm 2.5 with Eq. 3.2 and 3.7 to 3.9.
+//!
+//! Each value is computed when it is first needed, and once a state.
 
 use super::features::{Encoder, Features};
 use super::hierarchy::CompositeValues;
@@ -7,17 +9,18 @@ use super::plan::Plan;
 use super::primitives::PrimitiveSet;
 use crate::worlds::StateType;
 
-/// What decides an agent's values: its hierarchy and its primitive subtasks.
+/// Everything that an agent's values depend on: the learned parameters of its hierarchy and
+/// of its primitive subtasks.
 #[derive(Clone, Debug)]
 pub(super) struct Parameters<'r> {
     pub(super) encoder: &'r Encoder,
     pub(super) plan: Plan,
-    /// In the order of the nodes; empty for primitive subtasks.
+    /// In the order of the nodes; `None` for primitive subtasks.
     pub(super) values: Vec<Option<CompositeValues>>,
     pub(super) primitives: PrimitiveSet,
 }
 
-/// A value with the number of the state that it was computed in.
+/// A value with the number of the state in which it was computed.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cached {
     state: u64,
@@ -34,12 +37,12 @@ struct ActionValues {
     best: f32,
 }
 
-/// One state, with the values computed in it so far.
+/// One state with the values that were computed in it so far.
 #[derive(Clone, Debug)]
 pub(super) struct StateValues {
     pub(super) state_type: StateType,
     pub(super) features: Features,
-    /// The number of the state; cached values of another number are void.
+    /// The number of the state. Cached values with another number are out of date.
     state: u64,
     primitives: Vec<ActionValues>,
     /// For each node but the root: C~ and C of its parent for it.
@@ -51,9 +54,9 @@ pub(super) struct StateValues {
 /// Which of the two completion functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Completion {
-    /// C~, with pseudo-rewards, which the subtask chooses by.
+    /// C~, with pseudo-rewards, by which the subtask chooses.
     Inside = 0,
-    /// C, which its parent sees.
+    /// C, without pseudo-rewards, which its parent sees.
     Outside = 1,
 }
 
@@ -78,7 +81,7 @@ impl StateValues {
         }
     }
 
-    /// Holds another state from now on.
+    /// Loads another state.
     #[inline]
     pub(super) fn load(&mut self, state_type: StateType, inputs: &[f32]) {
         self.state_type = state_type;
@@ -86,13 +89,13 @@ impl StateValues {
         self.state += 1;
     }
 
-    /// Forgets all values, not the features: the primitive subtasks have changed.
+    /// Forgets all values but not the features, because the primitive subtasks have changed.
     pub(super) fn forget_values(&mut self) {
         self.state += 1;
     }
 
-    /// Forgets what changes with the completion functions for `child`: these, and
-    /// the values of all nodes above it.
+    /// Forgets what an update of the completion functions for `child` changes: their values,
+    /// and V of all nodes above it.
     #[inline]
     pub(super) fn forget(&mut self, plan: &Plan, child: usize) {
         self.completions[child] = [Cached::default(); 2];
@@ -105,7 +108,7 @@ impl StateValues {
 }
 
 impl Parameters<'_> {
-    /// Q_prim of all actions of a primitive subtask (Thesis Eq. 3.9).
+    /// Returns Q_prim of all actions of a primitive subtask (Thesis Eq. 3.9).
     #[inline]
     pub(super) fn action_values<'s>(
         &self,
@@ -131,8 +134,8 @@ impl Parameters<'_> {
         values.best = actions.iter().fold(f32::NEG_INFINITY, larger);
     }
 
-    /// V(i, s) of a node, Algorithm 2.5 with Eq. 3.2: choose the child with C~, return
-    /// with C. The node can act in the state.
+    /// Returns V(i, s) of a node by Algorithm 2.5: chooses the child with C~, returns its
+    /// value with C. The node must be able to act in the state.
     pub(super) fn projected_value(&self, now: &mut StateValues, node: usize) -> f32 {
         if let Some(primitive) = self.plan.nodes[node].primitive {
             self.evaluate_primitive(now, primitive);
@@ -151,7 +154,8 @@ impl Parameters<'_> {
         value
     }
 
-    /// The child a* that maximises C~ + V, the first of equals, and its V.
+    /// Returns the child with the largest C~ + V, the first of equals, and its V: j* of
+    /// Algorithm 2.5, a* of Algorithm 2.4.
     pub(super) fn best_child(&self, now: &mut StateValues, node: usize) -> (usize, f32) {
         let mut best = (node, 0.0);
         let mut highest = f32::NEG_INFINITY;
@@ -166,7 +170,13 @@ impl Parameters<'_> {
         best
     }
 
-    /// C~(i, s, a) or C(i, s, a) for a child of a node (Thesis Eq. 3.7, 3.8).
+    /// Returns C~(i, s, a) + V(a, s), by which a node chooses among its children.
+    #[inline]
+    pub(super) fn preference(&self, now: &mut StateValues, node: usize, child: usize) -> f32 {
+        self.projected_value(now, child) + self.completion(now, node, child, Completion::Inside)
+    }
+
+    /// Returns C~(i, s, a) or C(i, s, a) for a child of a node (Thesis Eq. 3.7, 3.8).
     #[inline]
     pub(super) fn completion(
         &self,
@@ -198,7 +208,7 @@ impl Parameters<'_> {
             .map_or(&[], |values| &values.parameters)
     }
 
-    /// Temperature of a composite node.
+    /// Returns the temperature of a composite node.
     #[inline]
     pub(super) fn temperature(&self, node: usize) -> f32 {
         self.values[node]

@@ -12,15 +12,15 @@ use crate::scenario::LearningSettings;
 use crate::worlds::{Exploration, TrainingSettings};
 use crate::worlds::{SubtaskId, World};
 
-/// One primitive subtask in training, alone, by Thesis Eq. 3.6: the value of an action is
-/// the reward of the next step, without prediction.
+/// Trains one primitive subtask alone by Thesis Eq. 3.6: the value of an action is the
+/// reward of the next step, without prediction.
 ///
-/// An episode starts where the world lets the subtask be trained and ends after its
-/// number of steps or when the world says so. With softmax exploration the
-/// temperature falls at the end of each *episode*: falling at every step it would be
-/// cold before rare inputs, such as targets at the edge of the view, were seen.
+/// The world decides where an episode starts. It ends after a number of steps or when the
+/// world ends it. With softmax exploration the temperature falls after each *episode*. If it
+/// fell at every step, it would be low before rare inputs had been seen, such as targets at
+/// the edge of the field of view.
 ///
-/// Where the world has no training for it, the subtask has learned nothing.
+/// Where the world has no training for the subtask, it learns nothing.
 #[derive(Debug)]
 pub struct PrimitiveTrainer<'t, W: World> {
     world: &'t W,
@@ -30,14 +30,14 @@ pub struct PrimitiveTrainer<'t, W: World> {
     primitive: PrimitiveValues,
     rng: Stream,
     temperature: f32,
-    /// Control steps to come.
+    /// Control steps left.
     left: u32,
     features: Features,
     room: Vec<Row>,
 }
 
 impl<'t, W: World> PrimitiveTrainer<'t, W> {
-    /// A primitive subtask that has learned nothing yet.
+    /// Starts the training of a primitive subtask that has learned nothing.
     #[must_use]
     pub fn new(
         world: &'t W,
@@ -62,14 +62,14 @@ impl<'t, W: World> PrimitiveTrainer<'t, W> {
         }
     }
 
-    /// Control steps to come.
+    /// Returns the number of control steps left.
     #[must_use]
     pub fn left(&self) -> u32 {
         self.left
     }
 
-    /// Trains for about `steps` control steps: to the end of the episode in which they
-    /// are done.
+    /// Trains for at least `steps` control steps, up to the end of an episode or of the
+    /// training.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -94,7 +94,7 @@ impl<'t, W: World> PrimitiveTrainer<'t, W> {
         Ok(())
     }
 
-    /// The subtask with what it has learned.
+    /// Returns the learned values.
     #[must_use]
     pub fn into_values(self) -> PrimitiveValues {
         self.primitive

@@ -1,23 +1,20 @@
-//! What an active composite child has visited: the states that its parent learns from
-//! when it returns.
+//! The states that composite children have visited: `childSeq` of Algorithm 2.4.
 
 use std::ops::Range;
 
 use super::features::Encoder;
 use super::plan::Plan;
 use super::state_values::StateValues;
-use crate::scenario::{CompletionBootstrap, LearningSettings};
 use crate::worlds::{MapId, StateType};
 
-/// The states since the root's present child was invoked, most recent last
-/// (`childSeq` of all active subtasks).
+/// The states visited since the root invoked its active child, the most recent last.
+///
+/// It holds the `childSeq` of every active subtask: each is an end of this list.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Visited<P> {
+pub(super) struct Visited {
     pub(super) types: Vec<StateType>,
     /// Feature vectors for each map that a completion function of a composite child uses.
     features: Vec<LoggedFeatures>,
-    /// Percepts, where the bootstrap value is taken in the updated state.
-    pub(super) percepts: Option<Vec<P>>,
 }
 
 /// The feature vectors of one map, one state after the other.
@@ -28,8 +25,8 @@ struct LoggedFeatures {
     vectors: Vec<f32>,
 }
 
-impl<P> Visited<P> {
-    pub(super) fn new(plan: &Plan, settings: &LearningSettings) -> Self {
+impl Visited {
+    pub(super) fn new(plan: &Plan) -> Self {
         let mut features: Vec<LoggedFeatures> = Vec::new();
         for node in plan.nodes.iter().filter(|node| node.primitive.is_none()) {
             let completion = &node.completion;
@@ -45,8 +42,6 @@ impl<P> Visited<P> {
         Self {
             types: Vec::new(),
             features,
-            percepts: (settings.completion_bootstrap == CompletionBootstrap::AsPrinted)
-                .then(Vec::new),
         }
     }
 
@@ -54,9 +49,6 @@ impl<P> Visited<P> {
         self.types.clear();
         for logged in &mut self.features {
             logged.vectors.clear();
-        }
-        if let Some(percepts) = &mut self.percepts {
-            percepts.clear();
         }
     }
 

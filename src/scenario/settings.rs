@@ -1,6 +1,7 @@
 //! The settings of learning and of evolution, which are the same in every world.
 
 use schemars::JsonSchema;
+use serde::de::{Deserializer, Error};
 use serde::{Deserialize, Serialize};
 
 use super::defaults as d;
@@ -27,8 +28,10 @@ pub struct LearningSettings {
     pub epsilon: f64,
     /// Initial value of every learned parameter (theta).
     pub initial_parameter: f64,
-    /// State in which the bootstrap value of the completion function C~ is taken.
-    pub completion_bootstrap: CompletionBootstrap,
+    /// A setting of earlier versions: files may still state the value that is left.
+    #[serde(skip_serializing, deserialize_with = "only_next_state")]
+    #[schemars(skip)]
+    completion_bootstrap: (),
     /// Terminations on which a composite subtask's temperature falls.
     pub cool_on: CoolOn,
     /// Transitions that carry a negative pseudo-reward.
@@ -53,7 +56,7 @@ impl Default for LearningSettings {
             probability_limit: d::PROBABILITY_LIMIT,
             epsilon: d::EPSILON,
             initial_parameter: d::INITIAL_PARAMETER,
-            completion_bootstrap: CompletionBootstrap::default(),
+            completion_bootstrap: (),
             cool_on: CoolOn::default(),
             pseudo_reward: PseudoReward::default(),
             pseudo_penalty: d::PSEUDO_PENALTY,
@@ -63,16 +66,16 @@ impl Default for LearningSettings {
     }
 }
 
-/// The state in which the bootstrap value V(a*, .) of the completion function C~ is taken
-/// (Thesis Eq. 3.4).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CompletionBootstrap {
-    /// V(a*, s'), in the next state: the intended algorithm.
-    #[default]
-    NextState,
-    /// V(a*, s), in the updated state: the formula as Equation 3.4 and Algorithm 2.4 print it.
-    AsPrinted,
+/// Reads `completion_bootstrap` and refuses its removed value `as_printed`.
+fn only_next_state<'de, D: Deserializer<'de>>(json: D) -> Result<(), D::Error> {
+    let value = String::deserialize(json)?;
+    if value == "next_state" {
+        return Ok(());
+    }
+    Err(D::Error::custom(format!(
+        "found {value:?}; allowed: \"next_state\" (learning by the misprint of Equation 3.4 is no \
+         longer part of the program)"
+    )))
 }
 
 /// The terminations on which the temperature of a composite subtask falls.
@@ -218,4 +221,25 @@ pub enum Variation {
     /// Not at all: every individual keeps its hierarchy and goes on learning until the
     /// generation limit.
     None,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LearningSettings;
+
+    #[test]
+    fn files_of_earlier_versions_are_read_unless_they_follow_the_misprint() {
+        let read = |value: &str| {
+            let json = format!("{{\"completion_bootstrap\": {value}}}");
+            serde_json::from_str::<LearningSettings>(&json)
+        };
+        assert_eq!(read("\"next_state\"").unwrap(), LearningSettings::default());
+        let refused = read("\"as_printed\"").unwrap_err().to_string();
+        assert!(
+            refused.starts_with("found \"as_printed\"; allowed: \"next_state\""),
+            "{refused}"
+        );
+        let written = serde_json::to_string(&LearningSettings::default()).unwrap();
+        assert!(!written.contains("completion_bootstrap"));
+    }
 }

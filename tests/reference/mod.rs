@@ -15,9 +15,7 @@ pub use subtasks::{DELIVERED, Row, row};
 
 use maxq_lab::hierarchy::Tree;
 use maxq_lab::learning::{Hierarchy, PrimitiveSet, Update};
-use maxq_lab::scenario::{
-    CompletionBootstrap, CoolOn, LearningSettings, PrimitiveLearning, PseudoReward,
-};
+use maxq_lab::scenario::{CoolOn, LearningSettings, PrimitiveLearning, PseudoReward};
 use maxq_lab::worlds::Catalogue;
 use maxq_lab::worlds::foraging::FeatureSettings;
 use subtasks::{Input, phi};
@@ -88,8 +86,6 @@ pub struct Seen {
     pub delivered: usize,
     /// Times that a* was among near equals.
     pub ties: usize,
-    /// Updates of states in which a* cannot act.
-    pub unable: usize,
     /// Largest difference to an error of the agent.
     pub worst_error: f64,
 }
@@ -223,13 +219,12 @@ impl<'a> MaxqQ<'a> {
         let gamma = self.model.discount;
         let pseudo_reward = self.pseudo_reward(i, s_next);
         let a_star = self.argmax(i, a, child_seq, s_next);
-        let bootstrap = |this: &Self, s: &State| this.bootstrap(i, a_star, s, s_next);
-        let before: Vec<_> = child_seq.iter().map(|s| bootstrap(self, s)).collect();
+        let before = self.bootstrap(i, a_star, s_next);
         // N: 1 for the last visited state, the length of childSeq for the first.
         for (n, s) in (1..).zip(child_seq) {
             let [next_c_tilde, next_c] = match self.reading {
-                Reading::BeforeTheLoop => before[n as usize - 1],
-                Reading::InTheLoop => bootstrap(self, s),
+                Reading::BeforeTheLoop => before,
+                Reading::InTheLoop => self.bootstrap(i, a_star, s_next),
             };
             let discount = gamma.powi(n);
             // 16, Eq. 3.4.
@@ -245,25 +240,18 @@ impl<'a> MaxqQ<'a> {
             );
             learn(&mut self.theta_c[a], alpha * error_outside, features, at);
             self.compare(i, a, s, n, [error_inside, error_outside]);
-            let unable = a_star.is_some_and(|a_star| self.terminal(a_star, s));
-            self.seen.unable += usize::from(unable);
         }
     }
 
-    /// C~(i, s', a*) + V(a*, .) and C(i, s', a*) + V(a*, s'); 0 if s' is terminal.
-    fn bootstrap(&self, i: usize, a_star: Option<usize>, s: &State, s_next: &State) -> [f64; 2] {
+    /// C~(i, s', a*) + V(a*, s') and C(i, s', a*) + V(a*, s'); 0 if s' is terminal.
+    fn bootstrap(&self, i: usize, a_star: Option<usize>, s_next: &State) -> [f64; 2] {
         let Some(a_star) = a_star else {
             return [0.0; 2];
         };
-        let v_next = self.v(a_star, s_next);
-        let v = match self.model.completion_bootstrap {
-            CompletionBootstrap::NextState => v_next,
-            CompletionBootstrap::AsPrinted if self.terminal(a_star, s) => 0.0,
-            CompletionBootstrap::AsPrinted => self.v(a_star, s),
-        };
+        let v = self.v(a_star, s_next);
         [
             self.c_tilde(i, s_next, a_star) + v,
-            self.c(i, s_next, a_star) + v_next,
+            self.c(i, s_next, a_star) + v,
         ]
     }
 
@@ -284,7 +272,7 @@ impl<'a> MaxqQ<'a> {
         let recorded = self.peek_update();
         let discount = self.model.discount;
         let distance = |&a_star: &usize| {
-            let [_, next_c] = self.bootstrap(i, Some(a_star), &seq[0], s_next);
+            let [_, next_c] = self.bootstrap(i, Some(a_star), s_next);
             let error_outside = discount * next_c - self.c(i, &seq[0], a);
             (error_outside - f64::from(recorded.error_outside)).abs()
         };
