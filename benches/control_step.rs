@@ -1,6 +1,6 @@
 //! One learned control step: sense, choose through the whole hierarchy, move, learn.
 //!
-//! The hierarchy is the complete one of Thesis Figure 4.2; one element is one step.
+//! The hierarchy is the complete one of Thesis Figure 4.2. One element is one step.
 
 #![expect(
     clippy::expect_used,

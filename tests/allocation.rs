@@ -1,10 +1,10 @@
-//! Contract: a control step asks for no memory.
+//! Contract: a control step allocates no memory.
 //!
-//! A step takes less than a microsecond, an allocation a tenth of that, and two threads that
-//! allocate wait for each other. So an agent has its room from the start, or grows it in its
-//! first trials, and from then on senses, chooses, acts and learns in it: in foraging, where
-//! features are computed, and with tables. The same for what evolution does most besides,
-//! working out selection probabilities: their number may not grow with the number of states.
+//! A step takes less than a microsecond, an allocation a tenth of that, and threads that
+//! allocate wait for each other. So an agent allocates its room at the start or in its first
+//! trials, and from then on senses, chooses, acts and learns without an allocation: with
+//! Gaussian features in foraging, and with tables. The allocations for selection probabilities,
+//! the other large part of evolution's work, must not grow with the number of states.
 
 #![allow(clippy::unwrap_used)]
 
@@ -16,7 +16,7 @@ use maxq_lab::scenario::Scenario;
 use maxq_lab::worlds::WorldFn;
 use maxq_lab::worlds::scene::Scenic;
 
-/// Trials in which room may grow: until one has been as long as trials can be.
+/// Trials in which the agent may allocate: enough for one that reaches the step limit.
 const FIRST_TRIALS: usize = 60;
 const TRIALS: usize = 30;
 const STEP_LIMIT: u32 = 400;
@@ -57,7 +57,7 @@ impl WorldFn for Trials {
 }
 
 #[test]
-fn a_control_step_asks_for_no_memory() {
+fn a_control_step_allocates_no_memory() {
     for name in [
         "environment-1",
         "environment-2",
@@ -67,7 +67,7 @@ fn a_control_step_asks_for_no_memory() {
     ] {
         let scenario = Scenario::load(name).unwrap();
         for (allocations, steps) in scenario.world.clone().build(Trials(scenario)).unwrap() {
-            assert!(steps > 100, "{name}: {steps} steps say nothing");
+            assert!(steps > 100, "{name}: {steps} steps are too few");
             assert_eq!(allocations, 0, "{name}, in {steps} steps");
         }
     }
@@ -99,7 +99,7 @@ impl WorldFn for Probabilities {
 }
 
 #[test]
-fn selection_probabilities_ask_for_no_memory_a_state() {
+fn allocations_for_selection_probabilities_do_not_grow_with_the_states() {
     let count = |states| {
         let scenario = Scenario::load("environment-3").unwrap();
         let world = scenario.world.clone();

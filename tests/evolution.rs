@@ -1,10 +1,9 @@
-//! Contract: evolution is Algorithm 3.1 with the operators of the method.
+//! Contract: evolution is Thesis Algorithm 3.1 with the operators of `src/evolution/README.md`.
 //!
-//! Selection here works on a noisy fitness, so that even a wrong evolution "finds"
-//! something: only its parts can be tested. Crossover: valid trees, nothing lost,
-//! learned values where they belong, sites without a bias. Breeding: who lives on, who
-//! dies, who mates. A generation: who runs which trials, from where, what counts, what
-//! is reported, and when it is over.
+//! Selection works on a noisy fitness, so even a wrong evolution "finds" something. Only its
+//! parts can be tested. Crossover: valid trees, no lost subtrees, learned values in the right
+//! places, unbiased sites. Breeding: which individuals are reproduced, die and become parents.
+//! A generation: which trials run, which are scored, what is recorded, and when evolution ends.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -32,8 +31,8 @@ use maxq_lab::worlds::{Catalogue, World};
 use rand::RngExt;
 use rand::rngs::SmallRng;
 
-/// The smoke scenario with short trials, in which nothing is learned unless a test
-/// wants it: what individuals have when they have lived is what they inherited.
+/// The smoke scenario with short trials and without learning: after a generation individuals
+/// have the values that they inherited.
 fn still_scenario() -> Scenario {
     let mut scenario = Scenario::load("smoke").unwrap();
     scenario.learning.learning_rate = 0.0;
@@ -56,14 +55,14 @@ fn experiment(scenario: Scenario) -> Experiment<ForagingWorld> {
     Experiment::new(scenario, world).unwrap()
 }
 
-/// Primitive subtasks that have learned nothing.
+/// A primitive set that has learned nothing.
 fn untrained(catalogue: &Catalogue) -> PrimitiveSet {
     let primitives = catalogue.primitives();
     let primitives = primitives.map(|primitive| PrimitiveValues::new(primitive, catalogue, 0.0));
     PrimitiveSet::new(primitives.collect(), catalogue).unwrap()
 }
 
-/// An individual with random learned values, no two alike.
+/// An individual with random learned values, no two of them equal.
 fn learned(id: u64, tree: Tree, catalogue: &Catalogue, rng: &mut SmallRng) -> Individual {
     let (tree, mut values) =
         Hierarchy::new(tree, catalogue, &LearningSettings::default()).into_parts();
@@ -88,8 +87,8 @@ fn learned(id: u64, tree: Tree, catalogue: &Catalogue, rng: &mut SmallRng) -> In
     }
 }
 
-/// An evolution of which these individuals are the ranked generation `generation`; 0
-/// means that they have not lived yet.
+/// The state of an evolution after generation `generation`, with these ranked individuals; 0
+/// means that they have not run yet.
 fn state(individuals: Vec<Individual>, catalogue: &Catalogue, generation: u64) -> EvolutionState {
     EvolutionState {
         generation,
@@ -118,7 +117,7 @@ fn individuals<'t>(
         .collect()
 }
 
-/// One step of evolution from a state: what is reported, and the state after it.
+/// Runs one generation from a state: its record, and the state after it.
 fn step<W: World>(
     experiment: &Experiment<W>,
     seed: u64,
@@ -133,8 +132,8 @@ fn step<W: World>(
     (record, after)
 }
 
-/// Whether counts are what a fair draw with these probabilities gives: every count
-/// within five standard deviations.
+/// Asserts that counts fit draws with these probabilities: each is within five standard
+/// deviations.
 fn assert_frequencies(counts: &[u32], probabilities: &[f64]) {
     let all = f64::from(counts.iter().sum::<u32>());
     assert!((probabilities.iter().sum::<f64>() - 1.0).abs() < 1e-9);

@@ -1,11 +1,11 @@
-//! Contract: an explained step is the step that the agent takes anyway, and every number
-//! in the explanation is the one that decided it or came of it.
+//! Contract: an explained step is the step that the agent takes anyway, and every number in
+//! the explanation is the one that decided the step or that the step produced.
 //!
-//! The trial stepper teaches the method to who looks at it. A display that recomputed
-//! values a moment too late, or nudged the agent by looking, would teach another method
-//! and nobody could tell. So explained agents are compared with unexplained ones bit for
-//! bit, and the numbers with the slow reference of `reference`, which shares no code with
-//! the library. Tolerances are those of `maxq_reference.rs`: sums in single precision.
+//! The trial stepper teaches the method to its reader. A display that computed values a moment
+//! too late, or changed the agent by looking at it, would teach another method without anyone
+//! noticing. So explained agents are compared with unexplained ones bit for bit, and the
+//! numbers with the slow `reference`, which shares no code with the library. Tolerances are
+//! those of `maxq_reference.rs`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 // The reference serves two test files; each uses a part of it.
@@ -30,7 +30,7 @@ const TREES: [&str; 2] = [
      (FindNest Avoid Wander Avoid) ApproachNest ApproachNest)",
 ];
 
-/// What was met, so that a test can tell that it tested something.
+/// Counts of what was met, so that a test can show that it tested something.
 #[derive(Debug, Default)]
 struct Met {
     steps: usize,
@@ -45,7 +45,7 @@ struct Met {
     truncated: usize,
 }
 
-/// Lets two agents live the same trials, one of them explained, and checks every step.
+/// Runs the same trials with two agents, one of them explained, and checks every step.
 fn check(lab: &Lab, tree: &str, trials: usize) -> Met {
     let mut met = Met::default();
     let world = &lab.experiment.world;
@@ -106,7 +106,7 @@ impl Met {
     }
 }
 
-/// The explanation tells the very events that another observer of the same step saw.
+/// Asserts that the explanation has the events that an observer of the same step recorded.
 fn assert_same_events(explanation: &Explanation, events: &[Event]) {
     let levels = explanation.levels.iter().filter(|level| level.chose);
     let told: Vec<_> = levels.map(|level| (level.node, level.active)).collect();
@@ -158,7 +158,7 @@ fn assert_same_events(explanation: &Explanation, events: &[Event]) {
     assert!(path[0] == 0 && active.eq(next));
 }
 
-/// Every number against the reference with the values from before and after the step.
+/// Compares every number with the reference at the values from before and after the step.
 fn assert_numbers(
     lab: &Lab,
     past: &Agent<'_, ForagingWorld>,
@@ -200,7 +200,7 @@ fn assert_numbers(
         changed(update_trace.c, [&old, &new].map(|r| r.c(i, before, a)));
         if let Some(end) = update_trace.termination {
             changed(end.temperature, [&old, &new].map(|r| r.tau[i]));
-            // Delivery is everybody's goal, a lost target nobody's.
+            // Delivery is a goal of every subtask, a lost target of none.
             expected_end &= end.at_goal;
             assert_eq!(
                 update_trace.pseudo_reward,
@@ -242,7 +242,7 @@ fn explained_steps_are_the_steps_that_agents_take() {
 }
 
 #[test]
-fn the_switch_to_epsilon_greedy_is_told() {
+fn the_switch_to_epsilon_greedy_selection_is_explained() {
     let cold = [
         "learning.temperature_decrease=0.5",
         "learning.probability_limit=0.7",
@@ -252,7 +252,7 @@ fn the_switch_to_epsilon_greedy_is_told() {
 }
 
 #[test]
-fn what_primitive_subtasks_learn_is_told_where_they_do() {
+fn updates_of_primitive_subtasks_are_explained_where_they_learn() {
     let shared = ["learning.primitive_learning=shared"];
     let met = check(&Lab::new("environment-1", &shared), TREES[0], 3);
     assert!(met.learned_actions == met.steps, "{met:?}");

@@ -1,11 +1,11 @@
-//! Contract: hierarchies are read, written, compared and checked as the method says.
+//! Contract: hierarchies are read, written, compared and checked as
+//! `src/hierarchy/README.md` says.
 //!
-//! A hierarchy is the genome. A rule that is too strict closes roads to evolution, one
-//! that is too loose lets in trees that the learning cannot run; a canonical form that
-//! tells equal structures apart keeps runs from ever ending, one that confuses
-//! different structures ends them too soon. So thousands of random trees are held
-//! against the rules written down a second time (`trees`), and every rule has an
-//! example on either side of it.
+//! A hierarchy is the genome. A rule that is too strict closes paths of evolution; one that is
+//! too loose lets in trees that cannot run. A canonical form that separates equal structures
+//! keeps runs from converging; one that confuses different structures ends them too soon. So
+//! thousands of random trees are compared with a second copy of the rules (`trees`), and every
+//! rule has an accepted and a rejected example.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -35,7 +35,7 @@ fn difference(a: &str, b: &str) -> i64 {
     structural_difference(&a, &b, catalogue)
 }
 
-/// Method.md section 4 once more, from the pairs of parent and primitive child.
+/// The structural difference computed a second way, from pairs of parent and primitive child.
 fn difference_by_definition(a: &Nested, b: &Nested) -> i64 {
     let composites = |tree: &Nested| -> BTreeMap<&str, BTreeMap<&str, i64>> {
         let composites = tree
@@ -77,7 +77,7 @@ fn difference_by_definition(a: &Nested, b: &Nested) -> i64 {
     -cost
 }
 
-/// The words of a text with random white space between them.
+/// Returns a text with random white space between its words.
 fn spaced(text: &str, seed: u64) -> String {
     let mut rng = chance(seed);
     let mut space = |least: usize| -> String {
@@ -101,7 +101,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn what_is_written_is_read_again(seed in any::<u64>(), spaces in any::<u64>()) {
+    fn a_written_hierarchy_can_be_read_again(seed in any::<u64>(), spaces in any::<u64>()) {
         let catalogue = WORLD.catalogue();
         let nested = valid_tree(&mut chance(seed));
         let tree = nested.tree(catalogue);
@@ -121,8 +121,8 @@ proptest! {
         let form = |nested: &Nested| canonical(&nested.tree(catalogue), catalogue);
         let shuffled = nested.shuffled(&mut rng);
         prop_assert_eq!(form(&nested), form(&shuffled));
-        // A primitive subtask elsewhere renamed is another structure, unless a brother
-        // made up for it.
+        // With a primitive subtask renamed it is another structure, unless a sibling
+        // compensates.
         let mut other = shuffled;
         let place = rng.random_range(0..other.nodes().len());
         let node = other.node_mut(place);
@@ -150,11 +150,11 @@ proptest! {
         prop_assert_eq!(of(&a, &b), of(&b, &a));
         prop_assert_eq!(of(&a, &a.shuffled(&mut rng)), 0);
         let c = valid_tree(&mut rng);
-        prop_assert!(of(&a, &c) >= of(&a, &b) + of(&b, &c), "a detour is no shorter");
+        prop_assert!(of(&a, &c) >= of(&a, &b) + of(&b, &c), "the triangle inequality holds");
     }
 
     #[test]
-    fn the_rules_are_those_of_the_method(seed in any::<u64>()) {
+    fn the_typing_rules_agree_with_their_second_copy(seed in any::<u64>()) {
         let catalogue = WORLD.catalogue();
         let mut rng = chance(seed);
         for nested in [valid_tree(&mut rng), changed_tree(&mut rng), changed_tree(&mut rng)] {
@@ -164,7 +164,7 @@ proptest! {
     }
 
     #[test]
-    fn a_subtask_is_able_where_it_and_something_below_it_can_act(seed in any::<u64>()) {
+    fn a_subtask_can_act_where_it_is_active_and_a_child_can_act(seed in any::<u64>()) {
         let catalogue = WORLD.catalogue();
         let nested = valid_tree(&mut chance(seed));
         let able = able(&nested.tree(catalogue), catalogue);
@@ -177,7 +177,7 @@ proptest! {
     }
 
     #[test]
-    fn summaries_count_what_is_there(seed in any::<u64>()) {
+    fn summaries_count_subtasks(seed in any::<u64>()) {
         let catalogue = WORLD.catalogue();
         let nested = valid_tree(&mut chance(seed));
         let summary = Summary::of(&nested.tree(catalogue), catalogue);
@@ -195,7 +195,7 @@ proptest! {
     }
 }
 
-/// Whether a walk down from here can end in a primitive subtask in a state type.
+/// Returns whether a walk down from here can end in a primitive subtask in a state type.
 fn reaches(node: &Nested, primitive: &str, state_type: u8) -> bool {
     let below = || {
         node.children
@@ -205,8 +205,8 @@ fn reaches(node: &Nested, primitive: &str, state_type: u8) -> bool {
     node.can_act(state_type) && (node.name == primitive || below())
 }
 
-/// Thesis Figure 4.6: -4 -2 -2 -1 -1 -1 -1 -1 -1. The figure's trees are lost; these
-/// differ as its sum says.
+/// Thesis Figure 4.6: -4 -2 -2 -1 -1 -1 -1 -1 -1. The trees of the figure are lost; these
+/// have the same sum.
 #[test]
 fn the_example_of_figure_4_6_is_14_apart() {
     let a = "(Root (Capture (FindBattery Avoid Wander) (VisibleBattery ApproachBattery)) \
@@ -229,9 +229,9 @@ fn weights_are_those_of_the_levels() {
     assert_eq!(difference(base, &with("Wander Wander")), -2);
 }
 
-/// Each rule, with a tree on either side of it.
+/// Each rule with an accepted and a rejected tree.
 #[test]
-fn every_rule_accepts_and_rejects_and_says_why() {
+fn every_rule_accepts_or_rejects_with_a_reason() {
     let catalogue = WORLD.catalogue();
     let result = |text: &str, depth| {
         let tree = parse(text, catalogue).unwrap();
@@ -265,7 +265,7 @@ fn every_rule_accepts_and_rejects_and_says_why() {
              allowed: a child active somewhere where its parent is",
         ),
         (
-            // Turn is active in 2 and 4: meeting is enough for a primitive child.
+            // Turn is active in 2 and 4. A primitive child only has to share a state type.
             "(Root Wander (VisibleNest Turn))",
             "(Root Wander (FindNest Turn))",
             "Turn (active in state types 2,4) under FindNest (active in 3); \
@@ -306,7 +306,7 @@ fn every_rule_accepts_and_rejects_and_says_why() {
 }
 
 #[test]
-fn what_is_no_tree_is_an_error_that_says_where() {
+fn malformed_text_is_an_error_that_names_the_place() {
     let error = |text: &str| parse(text, WORLD.catalogue()).unwrap_err().to_string();
     assert!(error("(Root Wonder)").starts_with("at byte 6: found \"Wonder\"; allowed: a subtask"));
     assert!(error("(Root Wander").starts_with("at byte 12: found the end of the text"));
@@ -318,7 +318,7 @@ fn what_is_no_tree_is_an_error_that_says_where() {
 }
 
 #[test]
-fn hierarchies_look_as_they_should() {
+fn drawings_of_hierarchies_match_their_snapshots() {
     let catalogue = WORLD.catalogue();
     let tree = parse(COMPLETE, catalogue).unwrap();
     let flat = parse("(Root Wander Wander Turn)", catalogue).unwrap();

@@ -1,17 +1,17 @@
-//! Contract: the agent learns by MAXQ-Q as the thesis writes it.
+//! Contract: the agent learns by MAXQ-Q as `src/learning/README.md` writes it.
 //!
-//! The agent is an explicit stack with logs, caches, factorised features and single
-//! precision; Algorithm 2.4 is half a page of recursion. If the two disagree, every
-//! result of every run is about another method. So whatever agents do in real trials -
-//! in all three environments, with flat, complete and mixed trees, cut off at the step
-//! limit too - is replayed by the half page, and compared update by update: N, both
-//! errors, all parameters and temperatures, for the default settings and each switch.
+//! The agent has an explicit stack, logs, caches, factorised features and single precision.
+//! Algorithm 2.4 is half a page of recursion. If the two disagree, every result of every run
+//! is about another method. So the trials of agents are replayed by the half page and
+//! compared update by update: N, both errors, all parameters and temperatures. This is done in
+//! all three environments, with flat, complete and mixed trees, with truncated trials, for the
+//! default settings and for each switch.
 //!
-//! Tolerances: a sum of 32 to 320 products of parameters up to 10 with features that
-//! add up to 1 is off by about 1e-6 in single precision, and an error is made of a
-//! handful of such sums; a parameter adds up the rounding of thousands of updates. The
-//! worst differences seen are 7e-6 in an error and 4e-5 in a parameter. A mistake - N
-//! off by one, a value out of date, another a* - shows as 1e-3 and more.
+//! Tolerances: a sum of 32 to 320 products of parameters up to 10 with features that add up
+//! to 1 has an error of about 1e-6 in single precision. The error of an update consists of a
+//! few such sums, and a parameter adds up the rounding of thousands of updates. The largest
+//! differences seen are 7e-6 in an error and 4e-5 in a parameter. A mistake, such as N off by
+//! one, an outdated value or another a*, shows as 1e-3 and more.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -25,9 +25,9 @@ use maxq_lab::worlds::World;
 use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld};
 use reference::{Event, Lab, MaxqQ, Reading, STEP_LIMIT, Seen, row};
 
-/// Largest difference allowed in the error of an update.
+/// The largest difference allowed in the error of an update.
 const ERROR_TOLERANCE: f64 = 2e-5;
-/// Largest difference allowed in a parameter or temperature after all trials.
+/// The largest difference allowed in a parameter or temperature after all trials.
 const PARAMETER_TOLERANCE: f64 = 1e-4;
 
 const FLAT: &str = "(Root Avoid Wander ApproachBattery ApproachNest Turn)";
@@ -39,18 +39,19 @@ const COMPLETE: &str = "(Root (Capture (FindBattery Avoid Wander) \
 const REPEATED: &str = "(Root Wander (Capture Wander Wander \
     (VisibleBattery ApproachBattery Turn ApproachBattery)) (FindNest Avoid Wander Avoid) \
     ApproachNest ApproachNest)";
-/// Composites that cannot act in a part of their active states, next to leaves that can.
+/// Composite subtasks that cannot act in some of their active states, next to leaves that
+/// can.
 const PARTLY_ABLE: &str = "(Root Wander (Capture (VisibleBattery ApproachBattery Avoid)) \
     (Deliver (VisibleNest ApproachNest Avoid) Wander))";
 const TREES: [&str; 4] = [FLAT, COMPLETE, REPEATED, PARTLY_ABLE];
 
-/// Step limits of successive trials: some let the robot deliver, some cut it off.
+/// Step limits of successive trials: some let the robot deliver, some truncate the trial.
 const LIMITS: [u32; 16] = [
     700, 12, 700, 45, 400, 150, 2000, 700, 700, 90, 700, 700, 2000, 400, 700, 30,
 ];
 
-/// Runs trials with these step limits, replays each, and compares what was learned:
-/// the largest difference in a parameter, and what was seen.
+/// Runs and replays trials with these step limits. Returns the largest difference in a
+/// parameter, and counts of what was seen.
 fn compare(lab: &Lab, tree: &str, limits: &[u32], reading: Reading) -> (f64, Seen) {
     let untrained = lab.untrained(tree);
     let model = &lab.experiment.scenario.learning;
@@ -89,7 +90,7 @@ fn largest_difference(a: &MaxqQ<'_>, b: &MaxqQ<'_>) -> f64 {
     })
 }
 
-/// Asserts that all trees learn as the reference does, and returns what was seen.
+/// Asserts that all trees learn as the reference does. Returns counts of what was seen.
 fn assert_same(lab: &Lab, trees: &[&str]) -> Seen {
     let mut all = Seen::default();
     for tree in trees {
@@ -109,22 +110,22 @@ fn assert_same(lab: &Lab, trees: &[&str]) -> Seen {
 }
 
 #[test]
-fn agents_learn_as_the_algorithm_says_in_environment_1() {
+fn agents_learn_by_the_algorithm_in_environment_1() {
     assert_same(&Lab::new("environment-1", &[]), &TREES);
 }
 
 #[test]
-fn agents_learn_as_the_algorithm_says_in_environment_2() {
+fn agents_learn_by_the_algorithm_in_environment_2() {
     assert_same(&Lab::new("environment-2", &[]), &TREES);
 }
 
 #[test]
-fn agents_learn_as_the_algorithm_says_in_environment_3() {
+fn agents_learn_by_the_algorithm_in_environment_3() {
     assert_same(&Lab::new("environment-3", &[]), &TREES);
 }
 
 #[test]
-fn temperatures_fall_at_goals_only_where_it_is_asked_for() {
+fn temperatures_fall_only_at_goals_if_the_scenario_says_so() {
     assert_same(
         &Lab::new("environment-3", &["learning.cool_on=goal"]),
         &TREES,
@@ -132,7 +133,7 @@ fn temperatures_fall_at_goals_only_where_it_is_asked_for() {
 }
 
 #[test]
-fn all_but_goal_states_are_punished_where_it_is_asked_for() {
+fn all_states_but_goals_are_punished_if_the_scenario_says_so() {
     assert_same(
         &Lab::new("environment-2", &["learning.pseudo_reward=all"]),
         &TREES,
@@ -140,7 +141,7 @@ fn all_but_goal_states_are_punished_where_it_is_asked_for() {
 }
 
 #[test]
-fn primitive_subtasks_go_on_learning_where_it_is_asked_for() {
+fn primitive_subtasks_learn_if_the_scenario_says_so() {
     assert_same(
         &Lab::new("environment-1", &["learning.primitive_learning=shared"]),
         &TREES,
@@ -148,13 +149,13 @@ fn primitive_subtasks_go_on_learning_where_it_is_asked_for() {
 }
 
 #[test]
-fn features_have_the_width_that_is_asked_for() {
+fn features_have_the_width_of_the_scenario() {
     let setting = "world.foraging.features.rbf_width=variance";
     assert_same(&Lab::new("environment-3", &[setting]), &TREES);
 }
 
 #[test]
-fn sensors_have_as_many_centres_as_asked_for() {
+fn sensors_have_as_many_centres_as_the_scenario_says() {
     let setting = "world.foraging.features.proximity_centres=3";
     assert_same(
         &Lab::new("environment-1", &[setting]),
@@ -173,10 +174,10 @@ fn switches_work_together() {
     assert_same(&Lab::new("environment-2", &settings), &TREES);
 }
 
-/// The two readings of lines 15 to 19 are the same algorithm, but for trials that are
-/// cut off; the thesis has none.
+/// The two readings of lines 15 to 19 differ only in truncated trials, which the thesis does
+/// not have.
 #[test]
-fn when_bootstrap_values_are_read_matters_only_where_a_trial_is_cut_off() {
+fn the_time_of_reading_bootstrap_values_matters_only_in_truncated_trials() {
     let lab = Lab::new("environment-1", &[]);
     for tree in [COMPLETE, REPEATED] {
         let whole = compare(&lab, tree, &[STEP_LIMIT; 3], Reading::InTheLoop);
@@ -186,7 +187,7 @@ fn when_bootstrap_values_are_read_matters_only_where_a_trial_is_cut_off() {
     }
 }
 
-/// Table 4.2 and the rest of the catalogue, against this file's own copy.
+/// Compares the catalogue with a second copy of Thesis Tables 4.2 and 4.3.
 #[test]
 fn the_catalogue_is_that_of_the_tables() {
     let lab = Lab::new("environment-1", &[]);
@@ -201,31 +202,34 @@ fn the_catalogue_is_that_of_the_tables() {
     }
 }
 
-/// A node's choices in some states: how often each child was chosen, how often it
-/// should have been, and whether selection was epsilon-greedy.
+/// A node's choices in one state: how often each child was chosen, its probability, and
+/// whether selection was epsilon-greedy.
 struct Choices {
     chosen: BTreeMap<usize, u32>,
     expected: BTreeMap<usize, f64>,
     greedy: bool,
 }
 
-/// The probability of each child by Thesis Eq. 2.12 at the node's own temperature, and
-/// whether the switch to epsilon-greedy selection acted.
+/// Returns the probability of each child by Thesis Eq. 2.12 at the node's own temperature,
+/// and whether selection was epsilon-greedy.
 fn expected(choices: &[(usize, f64)], tau: f64) -> (BTreeMap<usize, f64>, bool) {
     let (rho_limit, epsilon) = (0.98, 0.02);
     let highest = choices.iter().map(|c| c.1).fold(f64::MIN, f64::max);
     let weight = |value: f64| ((value - highest) / tau).exp();
     let sum: f64 = choices.iter().map(|&(_, value)| weight(value)).sum();
     let greedy = 1.0 / sum > rho_limit;
-    let probability = |value: f64| match greedy {
-        false => weight(value) / sum,
-        true => epsilon / choices.len() as f64 + if value == highest { 1.0 - epsilon } else { 0.0 },
+    let probability = |value: f64| {
+        if greedy {
+            epsilon / choices.len() as f64 + if value == highest { 1.0 - epsilon } else { 0.0 }
+        } else {
+            weight(value) / sum
+        }
     };
     let all = choices.iter().map(|&(a, value)| (a, probability(value)));
     (all.collect(), greedy)
 }
 
-/// All choices of an agent from one moment on, drawn again and again.
+/// Draws an agent's choices in one state again and again.
 fn choices_at(
     lab: &Lab,
     agent: &Agent<'_, ForagingWorld>,
@@ -310,7 +314,7 @@ fn choices_follow_the_values_at_the_temperature_of_the_node() {
     assert!(soft > 10 && greedy > 3, "{soft} soft, {greedy} greedy");
 }
 
-/// Every count within five standard deviations of what is expected.
+/// Asserts that every count is within five standard deviations of its expected value.
 fn assert_frequencies(choices: &Choices) {
     let draws = f64::from(choices.chosen.values().sum::<u32>());
     for (child, p) in &choices.expected {

@@ -1,4 +1,4 @@
-//! The next generation: reproduction, death, tournaments, crossover, mutation.
+//! The next generation: reproduction, death, tournaments, crossover and mutation.
 
 use rand::RngExt;
 
@@ -11,15 +11,17 @@ use crate::random::Stream;
 use crate::scenario::{Inheritance, Scenario, Variation};
 use crate::worlds::Catalogue;
 
-/// Pairs of parents drawn before two places are filled by copies instead.
+/// Pairs of parents drawn before two places are filled by copies.
 const MAX_PARENT_DRAWS: usize = 20;
 
-/// The population after `ranked`, which is sorted from best to worst.
+/// Returns the population that follows `ranked`, which is sorted from best to worst
+/// (Algorithm 3.1, lines 8 and 9).
 ///
-/// The best are reproduced, as many of the worst die, and the places left are filled
-/// by crossover of parents that win tournaments among the survivors, and mutation, where
-/// the scenario has any - or as the scenario's `variation` says. `next_id` is the id of the next new individual, and moves
-/// on.
+/// The best are reproduced and as many of the worst die. The other places are filled as the
+/// scenario's `variation` says: by default with crossover of parents that win tournaments
+/// among the survivors, followed by mutation where the scenario has any.
+///
+/// `next_id` is the id of the next new individual; it is advanced.
 ///
 /// # Errors
 /// When the gate is stopped.
@@ -70,7 +72,7 @@ pub(super) fn breed(
     Ok(population)
 }
 
-/// Fresh individuals with random hierarchies.
+/// Makes new individuals with random hierarchies.
 pub(super) fn random_individuals(
     count: usize,
     next_id: &mut u64,
@@ -92,7 +94,7 @@ pub(super) fn random_individuals(
     (0..count).map(draw).collect()
 }
 
-/// The ranks of two different parents, each the winner of a tournament.
+/// Returns the ranks of two different parents, each the winner of a tournament.
 fn parents(survivors: usize, tournament_size: usize, rng: &mut Stream) -> [usize; 2] {
     let all: Vec<_> = (0..survivors).collect();
     let first = tournament(&all, tournament_size, rng);
@@ -100,7 +102,7 @@ fn parents(survivors: usize, tournament_size: usize, rng: &mut Stream) -> [usize
     [first, tournament(&others, tournament_size, rng)]
 }
 
-/// The best of `size` different candidates (Thesis 2.3.1).
+/// Draws `size` different candidates and returns the best (Thesis 2.3.1).
 fn tournament(candidates: &[usize], size: usize, rng: &mut Stream) -> usize {
     let mut left = candidates.to_vec();
     let drawn = (0..size.min(candidates.len())).map(|_| {
@@ -110,7 +112,7 @@ fn tournament(candidates: &[usize], size: usize, rng: &mut Stream) -> usize {
     drawn.min().unwrap_or(0)
 }
 
-/// A new individual with the structure of another, and what that has learned, unless
+/// Makes a new individual with the structure of another, and with its learned values unless
 /// inheritance is Darwinian.
 fn copy(from: &Individual, id: u64, scenario: &Scenario, catalogue: &Catalogue) -> Individual {
     let (hierarchy, primitives) = match scenario.evolution.inheritance {

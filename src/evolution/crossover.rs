@@ -9,15 +9,17 @@ use crate::random::Stream;
 use crate::scenario::{Inheritance, Scenario};
 use crate::worlds::Catalogue;
 
-/// Pairs of crossover sites drawn before two parents count as incompatible. Trees
-/// have some ten nodes, so parents that fail here have hardly a valid pair.
+/// Pairs of crossover sites drawn before two parents count as incompatible. A tree has about
+/// ten nodes, so parents that fail here have hardly any valid pair.
 const MAX_SITE_DRAWS: usize = 200;
 
-/// Crosses two parents at sites drawn uniformly among their non-root nodes, drawn
-/// again until both offspring obey the typing rules; `None` when no draw did.
+/// Crosses two parents at sites drawn uniformly among their non-root nodes.
 ///
-/// The first offspring is `a` with a subtree of `b`, the second the reverse; their
-/// ids are `ids[0]` and `ids[1]`.
+/// Sites are drawn again until both offspring obey the typing rules. Returns `None` if no
+/// draw gave a valid pair.
+///
+/// The first offspring is `a` with a subtree of `b`, the second the reverse. Their ids are
+/// `ids[0]` and `ids[1]`.
 #[must_use]
 pub fn crossover(
     a: &Individual,
@@ -44,11 +46,11 @@ pub fn crossover(
     })
 }
 
-/// The receiver with the subtree at its site replaced by the donor's.
+/// Returns the receiver with the subtree at its site replaced by the donor's.
 ///
-/// All composites keep what their parent had learned, except those on the path from
-/// the parent of the new subtree to the root, which start anew. Under Darwinian
-/// inheritance all start anew.
+/// Composite subtasks keep their learned values, except those on the path from the parent
+/// of the new subtree to the root, which are reset. Under Darwinian inheritance all are
+/// reset.
 fn offspring(
     (receiver, site): (&Individual, usize),
     (donor, donor_site): (&Individual, usize),

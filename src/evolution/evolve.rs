@@ -1,6 +1,5 @@
 //! The evolutionary scheme (Thesis Algorithm 3.1).
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -9,44 +8,43 @@ use rand::RngExt;
 use super::breeding::{breed, random_individuals};
 use super::experiment::Experiment;
 use super::individual::{Individual, Origin};
+use super::measure::Measurement;
 use super::parallel::Workers;
-use super::record::{GenerationRecord, RankedRecord};
+use super::record::GenerationRecord;
 use super::trials::{Generation, IndividualTrials, TrialResults, TrialStarts, is_experienced};
-use crate::hierarchy::{Summary, canonical, structural_difference};
-use crate::learning::{
-    Gate, PolicySamples, PrimitiveSet, SelectionProbabilities, Stopped, average,
-};
+use crate::learning::{Gate, PolicySamples, PrimitiveSet, Stopped};
 use crate::random::{Purpose, stream};
 use crate::scenario::{PrimitiveLearning, Selection, Variation};
 use crate::worlds::World;
 
-/// All that an evolution has come to: with the scenario and the seed, everything
-/// needed to go on.
+/// The state of an evolution: with the scenario and the seed, all that is needed to
+/// continue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EvolutionState {
-    /// Generations lived through; 0 before the initial population has lived.
+    /// Finished generations; 0 before the initial population has run its trials.
     pub generation: u64,
-    /// After a generation from best to worst; before the first in the scenario's order.
+    /// The population: from best to worst, or in the scenario's order before the first
+    /// generation.
     pub individuals: Vec<Individual>,
-    /// The one copy of the primitive subtasks.
+    /// The primitive set of the population.
     pub primitives: PrimitiveSet,
-    /// Id of the next new individual.
+    /// The id of the next new individual.
     pub next_id: u64,
-    /// Control steps so far, training of the primitive subtasks included.
+    /// Control steps so far, with the training of the primitive subtasks.
     pub control_steps: u64,
     /// Whether the better half has one structure.
     pub converged: bool,
 }
 
 impl EvolutionState {
-    /// Whether evolution is over: converged, or at the generation limit.
+    /// Returns whether evolution has ended: converged, or at the generation limit.
     #[must_use]
     pub fn is_over(&self, generation_limit: u64) -> bool {
         self.converged || self.generation >= generation_limit
     }
 }
 
-/// An evolution under way.
+/// A running evolution.
 #[derive(Debug)]
 pub struct Evolution<'e, W: World> {
     experiment: &'e Experiment<W>,
@@ -57,7 +55,8 @@ pub struct Evolution<'e, W: World> {
 }
 
 impl<'e, W: World> Evolution<'e, W> {
-    /// Line 1: the initial population, with freshly trained primitive subtasks.
+    /// Begins an evolution (line 1): trains the primitive subtasks and makes the initial
+    /// population.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -84,7 +83,7 @@ impl<'e, W: World> Evolution<'e, W> {
         Self::resume(experiment, workers, seed, state, gate)
     }
 
-    /// Goes on from a state.
+    /// Resumes an evolution from a state.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -106,30 +105,27 @@ impl<'e, W: World> Evolution<'e, W> {
         })
     }
 
-    /// What the evolution has come to; a snapshot costs nothing.
+    /// Returns the present state. A snapshot of it costs nothing.
     #[must_use]
     pub fn state(&self) -> &Arc<EvolutionState> {
         &self.state
     }
 
-    /// Whether evolution is over: converged, or at the generation limit.
+    /// Returns whether evolution has ended: converged, or at the generation limit.
     #[must_use]
     pub fn is_over(&self) -> bool {
         let limit = self.experiment.scenario.evolution.generation_limit;
         self.state.is_over(limit)
     }
 
-    /// Only crossover can make one structure of many; without it the limit is the end.
-    fn may_converge(&self) -> bool {
-        self.experiment.scenario.evolution.variation == Variation::Crossover
-    }
-
-    /// One turn of the loop: lines 8 and 9 but before the first generation, then lines
-    /// 3 to 5. `progress` is told how many results have been lived: as many as all trials
-    /// so far make up, for all individuals come to their ends together.
+    /// Runs one generation: lines 8 and 9, except before the first generation, then lines 3
+    /// to 5.
+    ///
+    /// `progress` is called with the number of individuals finished, computed as trials
+    /// finished / trials per individual: all individuals advance in turns and end together.
     ///
     /// # Errors
-    /// When the gate is stopped; then nothing has changed.
+    /// When the gate is stopped. Then the state has not changed.
     pub fn step(
         &mut self,
         gate: &Gate,
@@ -154,15 +150,21 @@ impl<'e, W: World> Evolution<'e, W> {
         };
         let (results, primitives) = self.run_trials(&population, generation, gate, progress)?;
         let ranks = self.ranks(&results, generation);
-        let lived_steps: u64 = results.iter().map(|results| results.control_steps).sum();
+        let new_steps: u64 = results.iter().map(|one| one.control_steps).sum();
         let mut pairs: Vec<_> = population.into_iter().zip(results).map(Some).collect();
         let ranked: Vec<_> = ranks
             .iter()
             .filter_map(|&index| pairs[index].take())
             .collect();
-        let control_steps = self.state.control_steps + lived_steps;
+        let control_steps = self.state.control_steps + new_steps;
         let own = experiment.scenario.learning.primitive_learning == PrimitiveLearning::Individual;
-        let record = self.record(generation, &ranked, &primitives, control_steps, gate)?;
+        let measurement = Measurement {
+            experiment,
+            workers: self.workers,
+            samples: &self.samples,
+            gate,
+        };
+        let record = measurement.record(generation, &ranked, &primitives, control_steps)?;
         self.state = Arc::new(EvolutionState {
             generation,
             individuals: ranked
@@ -182,7 +184,7 @@ impl<'e, W: World> Evolution<'e, W> {
         Ok(record)
     }
 
-    /// Line 3: all individuals live through the generation.
+    /// Line 3: all individuals run their trials.
     fn run_trials(
         &self,
         population: &[Individual],
@@ -192,13 +194,13 @@ impl<'e, W: World> Evolution<'e, W> {
     ) -> Result<(Vec<TrialResults>, PrimitiveSet), Stopped> {
         let starts = TrialStarts::draw(self.experiment, self.seed, generation);
         let trials = self.experiment.scenario.evolution.trials_per_generation;
-        // Half of the results of an experienced individual is over already.
+        // An experienced individual skips half of the trials: they count as finished.
         let experienced = population.iter().filter(|one| is_experienced(one)).count();
-        let trials_over = AtomicUsize::new(experienced * trials / 2);
-        let trial_over = || {
-            let over = trials_over.fetch_add(1, Ordering::Relaxed) + 1;
-            if over.is_multiple_of(trials) {
-                progress(over / trials);
+        let trials_finished = AtomicUsize::new(experienced * trials / 2);
+        let trial_ended = || {
+            let finished = trials_finished.fetch_add(1, Ordering::Relaxed) + 1;
+            if finished.is_multiple_of(trials) {
+                progress(finished / trials);
             }
         };
         let generation = Generation {
@@ -207,7 +209,7 @@ impl<'e, W: World> Evolution<'e, W> {
             seed: self.seed,
             number: generation,
             gate,
-            trial_over: &trial_over,
+            trial_ended: &trial_ended,
         };
         if self.experiment.scenario.learning.primitive_learning == PrimitiveLearning::Shared {
             let mut primitives = self.state.primitives.clone();
@@ -219,23 +221,25 @@ impl<'e, W: World> Evolution<'e, W> {
             }
             return Ok((all, primitives));
         }
-        let born = population.iter().map(|individual| {
+        let tasks = population.iter().map(|individual| {
             let primitives = individual
                 .primitives
                 .as_ref()
                 .unwrap_or(&self.state.primitives);
             IndividualTrials::new(generation, individual, primitives)
         });
-        let lived = self.workers.finish(born.collect())?;
-        let results = lived
+        let finished = self.workers.finish(tasks.collect())?;
+        let results = finished
             .into_iter()
             .map(IndividualTrials::into_results)
             .collect();
         Ok((results, self.state.primitives.clone()))
     }
 
-    /// Line 4: indices from best to worst; of equals, the one is better that stands first
-    /// in the population: the reproduced as they were ranked, then by id.
+    /// Line 4: returns the individuals' indices from best to worst.
+    ///
+    /// Of equals, the one that stands first in the population ranks first: reproduced
+    /// individuals by their old ranks, then the others by id.
     fn ranks(&self, results: &[TrialResults], generation: u64) -> Vec<usize> {
         let mut order: Vec<_> = (0..results.len()).collect();
         match self.experiment.scenario.evolution.selection {
@@ -248,99 +252,9 @@ impl<'e, W: World> Evolution<'e, W> {
         }
         order
     }
-
-    fn record(
-        &self,
-        generation: u64,
-        ranked: &[(Individual, TrialResults)],
-        primitives: &PrimitiveSet,
-        control_steps: u64,
-        gate: &Gate,
-    ) -> Result<GenerationRecord, Stopped> {
-        let catalogue = self.experiment.catalogue();
-        let better = &ranked[..ranked.len() / 2];
-        let best = ranked[0].1.hierarchy.tree();
-        let individuals: Vec<_> = ranked
-            .iter()
-            .enumerate()
-            .map(|(index, (individual, results))| {
-                let tree = results.hierarchy.tree();
-                let summary = Summary::of(tree, catalogue);
-                RankedRecord {
-                    rank: index + 1,
-                    id: individual.id,
-                    origin: individual.origin.clone(),
-                    tree: summary.tree,
-                    composites: summary.composites,
-                    primitives: summary.primitives,
-                    primitives_by_state_type: summary.primitives_by_state_type,
-                    fitness_steps: results.fitness(),
-                    trials: results.scored.clone(),
-                    difference_to_best: structural_difference(tree, best, catalogue),
-                }
-            })
-            .collect();
-        let others = &individuals[1..better.len()];
-        let difference: i64 = others.iter().map(|other| other.difference_to_best).sum();
-        let structure =
-            |(_, results): &(_, TrialResults)| canonical(results.hierarchy.tree(), catalogue);
-        let first = structure(&ranked[0]);
-        Ok(GenerationRecord {
-            generation,
-            mean_difference: difference as f64 / others.len().max(1) as f64,
-            selection_probabilities: self.named(self.probabilities(better, primitives, gate)?),
-            converged: self.may_converge() && better.iter().all(|other| structure(other) == first),
-            control_steps,
-            individuals,
-        })
-    }
-
-    fn probabilities(
-        &self,
-        better: &[(Individual, TrialResults)],
-        primitives: &PrimitiveSet,
-        gate: &Gate,
-    ) -> Result<SelectionProbabilities, Stopped> {
-        let Experiment {
-            scenario,
-            world,
-            encoder,
-            ..
-        } = self.experiment;
-        let all = self.workers.map((0..better.len()).collect(), |index| {
-            let results = &better[index].1;
-            let learning = &scenario.learning;
-            let primitives = match learning.primitive_learning {
-                PrimitiveLearning::Individual => &results.primitives,
-                PrimitiveLearning::Frozen | PrimitiveLearning::Shared => primitives,
-            };
-            self.samples.probabilities(
-                world,
-                encoder,
-                learning,
-                &results.hierarchy,
-                primitives,
-                gate,
-            )
-        })?;
-        Ok(average(&all))
-    }
-
-    fn named(&self, probabilities: SelectionProbabilities) -> Vec<Option<BTreeMap<String, f64>>> {
-        let catalogue = self.experiment.catalogue();
-        let names = || {
-            catalogue
-                .primitives()
-                .map(|primitive| primitive.name(catalogue).to_owned())
-        };
-        let by_type = probabilities.into_iter();
-        by_type
-            .map(|row| row.map(|row| names().zip(row).collect()))
-            .collect()
-    }
 }
 
-/// The hand-coded hierarchies, or as many drawn by chance for random search.
+/// Returns the hand-coded individuals, or as many random ones for random search.
 fn first_population<W: World>(experiment: &Experiment<W>, seed: u64) -> Vec<Individual> {
     let evolution = &experiment.scenario.evolution;
     if evolution.variation == Variation::RandomTrees {

@@ -1,4 +1,4 @@
-//! A scenario ready to be carried out.
+//! A scenario that is ready to run.
 
 use thiserror::Error;
 
@@ -10,11 +10,11 @@ use crate::random::{Purpose, stream};
 use crate::scenario::Scenario;
 use crate::worlds::{Catalogue, World};
 
-/// Control steps of one turn of a primitive subtask's training: short beside the training,
-/// long beside the exchange of tasks.
+/// Control steps in one turn of a primitive subtask's training: few compared with the
+/// training, many compared with the cost of a turn.
 const TRAINING_TURN_STEPS: u32 = 1000;
 
-/// A scenario with its world, its feature maps and its first hierarchies.
+/// A scenario with its world, its feature maps and its initial population.
 #[derive(Clone, Debug)]
 pub struct Experiment<W> {
     /// The scenario.
@@ -30,7 +30,7 @@ pub struct Experiment<W> {
 /// Why a hierarchy cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum TreeError {
-    /// It is not the text of a hierarchy.
+    /// It is not the text form of a hierarchy.
     #[error(transparent)]
     Text(#[from] TextError),
     /// It breaks a typing rule.
@@ -38,18 +38,18 @@ pub enum TreeError {
     Typing(#[from] TypingError),
 }
 
-/// Why a scenario cannot be carried out although its numbers are allowed.
+/// Why a scenario cannot run although all its settings are in range.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("evolution.initial_population[{index}]: {source}")]
 pub struct ExperimentError {
     /// Index of the hierarchy in the initial population.
     pub index: usize,
-    /// What is wrong with it.
+    /// The error.
     pub source: TreeError,
 }
 
 impl<W: World> Experiment<W> {
-    /// Makes a scenario and its world ready.
+    /// Prepares a scenario and its world.
     ///
     /// # Errors
     /// When a hierarchy of the initial population is malformed or breaks a rule.
@@ -68,19 +68,19 @@ impl<W: World> Experiment<W> {
         })
     }
 
-    /// The world's subtasks.
+    /// Returns the subtasks of the world.
     #[must_use]
     pub fn catalogue(&self) -> &Catalogue {
         self.world.catalogue()
     }
 
-    /// A hierarchy of this shape that has learned nothing.
+    /// Makes a hierarchy that has learned nothing.
     #[must_use]
     pub fn untrained(&self, tree: Tree) -> Hierarchy {
         Hierarchy::new(tree, self.catalogue(), &self.scenario.learning)
     }
 
-    /// An agent with a hierarchy and the primitive subtasks, ready for the scenario's trials.
+    /// Makes an agent for the scenario's trials.
     #[must_use]
     pub fn agent(&self, hierarchy: Hierarchy, primitives: PrimitiveSet) -> Agent<'_, W> {
         let learning = &self.scenario.learning;
@@ -95,7 +95,7 @@ impl<W: World> Experiment<W> {
         )
     }
 
-    /// Trains the primitive subtasks; `primitive_set` numbers independent trainings.
+    /// Trains a primitive set. Each number of a `primitive_set` gives an independent training.
     ///
     /// # Errors
     /// When the gate is stopped.
@@ -122,12 +122,11 @@ impl<W: World> Experiment<W> {
         let trained = workers.finish(tasks.collect())?.into_iter();
         let primitives = trained.map(|task| task.trainer.into_values()).collect();
         let primitives = PrimitiveSet::new(primitives, self.catalogue());
-        Ok(primitives
-            .unwrap_or_else(|| unreachable!("one primitive was trained for each primitive")))
+        Ok(primitives.unwrap_or_else(|| unreachable!("every primitive subtask was trained")))
     }
 }
 
-/// A primitive subtask that is trained in turns.
+/// The training of a primitive subtask, in turns.
 struct TrainingTask<'t, W: World> {
     trainer: PrimitiveTrainer<'t, W>,
     gate: &'t Gate,
@@ -136,7 +135,7 @@ struct TrainingTask<'t, W: World> {
 impl<W: World> PooledTask for TrainingTask<'_, W> {
     type Error = Stopped;
 
-    /// Control steps.
+    /// Returns the control steps left.
     fn left(&self) -> Option<f64> {
         let left = self.trainer.left();
         (left > 0).then_some(f64::from(left))

@@ -1,4 +1,4 @@
-//! Individuals and where they come from.
+//! Individuals and their origins.
 
 use std::fmt;
 
@@ -9,28 +9,28 @@ use crate::learning::{Hierarchy, PrimitiveSet};
 /// A member of the population.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Individual {
-    /// Unique in a run, in the order of making. A reproduced individual keeps its id.
+    /// Unique in a run and rising with every new individual. A reproduced individual keeps
+    /// its id.
     pub id: u64,
-    /// How it came into its generation.
+    /// Its origin.
     pub origin: Origin,
-    /// Its structure and what it has learned.
+    /// Its hierarchy with the learned values.
     pub hierarchy: Hierarchy,
-    /// Its own primitive subtasks; `None` where it begins with, or stays with, the copy
-    /// of the population.
+    /// Its own primitive set; `None` where it uses that of the population.
     pub primitives: Option<PrimitiveSet>,
 }
 
-/// How an individual came into its generation.
+/// The origin of an individual in its generation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Origin {
     /// From the scenario's initial population.
     HandCoded,
-    /// Drawn by chance (`variation: random_trees`).
+    /// A random hierarchy (`variation: random_trees`).
     Random,
-    /// Among the best of the generation before; it lives on.
+    /// Reproduced: among the best of the generation before.
     Reproduced,
-    /// By crossover: the receiver with one subtree replaced by the donor's.
+    /// Made by crossover: the receiver with one subtree replaced by the donor's.
     Crossover {
         /// The parent that gave the tree from the root down.
         receiver: Parent,
@@ -38,25 +38,24 @@ pub enum Origin {
         donor: Parent,
         /// Composite subtasks whose learned values were inherited.
         inherited: Vec<Inherited>,
-        /// Composite subtasks that were set back to initial values, or are new.
+        /// Composite subtasks that were reset to initial values, or are new.
         reset: Vec<String>,
-        /// What mutation changed afterwards.
+        /// The mutations that followed.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         mutations: Vec<Mutation>,
     },
-    /// A copy with learned values of a parent, made where no crossover of any parents
-    /// drawn obeyed the rules.
+    /// A copy of a parent, made where no crossover of the parents drawn obeyed the rules.
     Copied {
-        /// The individual copied.
+        /// Id of the copied individual.
         from: u64,
-        /// What mutation changed afterwards.
+        /// The mutations that followed.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         mutations: Vec<Mutation>,
     },
 }
 
 impl Origin {
-    /// What mutation changed in it, in order.
+    /// Returns the mutations of the individual, in order.
     #[must_use]
     pub fn mutations(&self) -> &[Mutation] {
         match self {
@@ -66,20 +65,20 @@ impl Origin {
     }
 }
 
-/// A change of an offspring (Thesis chapter 5).
+/// A mutation of an offspring (Thesis chapter 5).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Mutation {
-    /// A child of a composite subtask is gone, with all below it.
+    /// A composite subtask lost a child and its subtree.
     Pruned {
         /// The composite subtask.
         parent: String,
         /// The child, as text.
         subtree: String,
     },
-    /// A composite subtask has a child more.
+    /// A composite subtask got one more child.
     Grown {
-        /// The composite subtask. It and all above it were set back to initial values.
+        /// The composite subtask. It and its ancestors were reset to initial values.
         parent: String,
         /// The child, as text.
         subtree: String,
@@ -113,6 +112,6 @@ pub struct Parent {
 pub struct Inherited {
     /// The subtask.
     pub subtask: String,
-    /// Id of the parent that it was inherited from.
+    /// Id of the parent from which the values were inherited.
     pub from: u64,
 }

@@ -5,6 +5,7 @@ mod crossover;
 mod evolve;
 mod experiment;
 mod individual;
+mod measure;
 mod mutation;
 mod parallel;
 mod record;

@@ -1,8 +1,7 @@
-//! Mutation: pruning and growth of hierarchies, which the thesis names as what crossover
-//! lacks (Thesis chapter 5).
+//! Mutation: pruning and growth of hierarchies (Thesis chapter 5).
 //!
-//! Crossover swaps subtrees and so leaves every composite subtask with as many children as
-//! it had. Pruning takes one away, growth adds one.
+//! Crossover swaps subtrees, so every composite subtask keeps its number of children. Pruning
+//! removes a child, growth adds one.
 
 use rand::RngExt;
 
@@ -13,14 +12,16 @@ use crate::random::Stream;
 use crate::scenario::Scenario;
 use crate::worlds::{Catalogue, SubtaskId};
 
-/// Draws of a place after which a hierarchy counts as one that cannot be mutated.
+/// Draws of a node after which a hierarchy counts as impossible to mutate.
 const MAX_DRAWS: usize = 200;
-/// Draws of what hangs below a new composite child before its place counts as one where
-/// it cannot be. About one in four of foraging's has no children and obeys no rule.
+/// Draws of a subtree for a new composite child before the child counts as impossible at
+/// its place. In the foraging task about one draw in four has no children and is invalid.
 const MAX_SUBTREE_DRAWS: usize = 50;
 
-/// The individual after the mutations that chance decides on: first pruning, then growth,
-/// each with its own probability. Where that is zero no random number is drawn.
+/// Returns the individual after mutation: first pruning, then growth, each with its own
+/// probability.
+///
+/// Where a probability is 0, no random number is drawn.
 #[must_use]
 pub fn mutated(
     individual: Individual,
@@ -43,8 +44,8 @@ fn happens(probability: f64, rng: &mut Stream) -> bool {
     probability > 0.0 && rng.random_bool(probability)
 }
 
-/// Without one of its nodes and all below it, drawn uniformly among those that the rules
-/// can spare. What is left keeps what it has learned.
+/// Removes one subtree, drawn uniformly among those without which the hierarchy still obeys
+/// the rules. The rest keeps its learned values.
 fn pruned(
     individual: Individual,
     scenario: &Scenario,
@@ -70,7 +71,7 @@ fn pruned(
     let place = tree.children(parent).position(|child| child == node);
     let mut values = individual.hierarchy.values().to_vec();
     values.drain(tree.subtree(node));
-    // The parent comes before its child: its index is the same in both trees.
+    // The parent precedes its child, so its index is the same in both trees.
     values[parent] = values[parent].as_ref().and_then(|value| {
         let mut vectors = value.vectors();
         vectors.remove(place?);
@@ -82,10 +83,10 @@ fn pruned(
     with(individual, hierarchy, mutation, &[], catalogue)
 }
 
-/// With one more child of a composite subtask, drawn uniformly among those that the rules
-/// allow and that it has not; below a composite child hangs a random subtree.
+/// Adds a child to a composite subtask, drawn uniformly among the children that it lacks and
+/// the rules allow. A composite child gets a random subtree.
 ///
-/// As in crossover the composites on the path to the root start anew.
+/// As in crossover, the composite subtasks on the path to the root are reset.
 fn grown(
     individual: Individual,
     scenario: &Scenario,
@@ -147,7 +148,8 @@ fn children(tree: &Tree, node: usize) -> Vec<SubtaskId> {
         .collect()
 }
 
-/// The individual with another hierarchy, whose composites at `path` have started anew.
+/// Returns the individual with another hierarchy, in which the composite subtasks at `path`
+/// were reset, and notes the mutation in its origin.
 fn with(
     mut individual: Individual,
     hierarchy: Hierarchy,

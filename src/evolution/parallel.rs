@@ -1,4 +1,4 @@
-//! Independent pieces of work, spread over threads.
+//! Threads for independent pieces of work.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -7,20 +7,20 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 use super::turns::{PooledTask, TaskPool};
 
-/// Threads for the pieces of a run's work.
+/// The threads of a run.
 ///
-/// Results never depend on the number of threads: a piece draws from random streams
-/// of its own, and results are put in order before anybody sees them.
+/// Results do not depend on the number of threads: each piece of work draws from its own
+/// random streams, and results are returned in the order of the pieces.
 #[derive(Debug)]
 pub struct Workers {
     pool: ThreadPool,
 }
 
 impl Workers {
-    /// Starts `threads` threads; 0 means one for each processor.
+    /// Starts `threads` threads, or one for each processor if that is 0.
     ///
     /// # Errors
-    /// When the operating system gives no threads.
+    /// When the operating system refuses to start threads.
     pub fn new(threads: usize) -> Result<Self, ThreadPoolBuildError> {
         let pool = ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -29,20 +29,20 @@ impl Workers {
         Ok(Self { pool })
     }
 
-    /// Number of threads.
+    /// Returns the number of threads.
     #[must_use]
     pub fn threads(&self) -> usize {
         self.pool.current_num_threads()
     }
 
-    /// Brings all tasks to their ends and returns them in their order.
+    /// Finishes all tasks and returns them in their order.
     ///
-    /// Turn by turn every thread takes the task that has most left to do, so that all
-    /// come to their ends together and no thread waits for a long last one. A single
-    /// thread waits for nobody: it does one task after the other, which is kinder to caches.
+    /// In every turn a thread takes the task with the most work left, so that all threads
+    /// finish at about the same time. A single thread runs one task after the other, which
+    /// is better for caches.
     ///
     /// # Errors
-    /// With the error of a turn, if one fails; the other tasks are given up.
+    /// With the error of the first turn that fails. The other tasks are abandoned.
     pub(crate) fn finish<T: PooledTask>(&self, tasks: Vec<T>) -> Result<Vec<T>, T::Error> {
         let pool = Mutex::new(TaskPool::new(tasks));
         let lock = || pool.lock().unwrap_or_else(PoisonError::into_inner);
@@ -52,9 +52,10 @@ impl Workers {
             while let Some(mut numbered) = held {
                 let turn = numbered.task.turn();
                 let kept = alone && turn.is_ok() && numbered.task.left().is_some();
-                held = match kept {
-                    true => Some(numbered),
-                    false => lock().exchange(numbered, turn),
+                held = if kept {
+                    Some(numbered)
+                } else {
+                    lock().exchange(numbered, turn)
                 };
             }
         });
@@ -62,12 +63,11 @@ impl Workers {
         pool.into_finished()
     }
 
-    /// Does every piece of `order`, started in that order, and returns the results
-    /// sorted by piece. Starting the longest pieces first leaves the threads little
-    /// to wait for at the end.
+    /// Computes every piece of `order`, started in that order, and returns the results sorted
+    /// by piece. Start the longest pieces first to keep the threads busy until the end.
     ///
     /// # Errors
-    /// With the error of a piece, if one fails.
+    /// With the error of a piece that fails.
     pub fn map<T: Send, E: Send>(
         &self,
         order: Vec<usize>,
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_come_in_the_order_of_the_pieces() {
+    fn results_are_sorted_by_piece() {
         let workers = Workers::new(3).unwrap();
         let order: Vec<usize> = (0..50).rev().collect();
         let squares: Result<Vec<_>, ()> = workers.map(order, |piece| Ok(piece * piece));

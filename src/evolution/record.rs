@@ -1,4 +1,4 @@
-//! What is reported of a generation.
+//! The record of a generation, as it is written to events.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use super::individual::Origin;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrialRecord {
-    /// Time steps; the limit if nothing was delivered.
+    /// Time steps; the step limit if the task was not done.
     pub steps: u32,
     /// Whether the task was done.
     pub delivered: bool,
@@ -24,13 +24,13 @@ pub struct RankedRecord {
     pub rank: usize,
     /// Id of the individual.
     pub id: u64,
-    /// How it came into this generation.
+    /// Its origin in this generation.
     pub origin: Origin,
     /// Its hierarchy as text.
     pub tree: String,
-    /// Composite subtasks in it, the root counted.
+    /// Number of composite subtasks, the root counted.
     pub composites: usize,
-    /// Distinct primitive subtasks in it.
+    /// The different primitive subtasks.
     pub primitives: Vec<String>,
     /// For each state type the primitive subtasks that can be selected.
     pub primitives_by_state_type: Vec<Vec<String>>,
@@ -46,33 +46,34 @@ pub struct RankedRecord {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GenerationRecord {
-    /// Number from 1, the initial population.
+    /// Number of the generation; 1 is the initial population.
     pub generation: u64,
     /// All individuals from best to worst.
     pub individuals: Vec<RankedRecord>,
-    /// Mean structural difference of the better half, without the best, to the best
+    /// Mean structural difference to the best, over the better half without the best itself
     /// (Thesis Figure 4.7).
     pub mean_difference: f64,
-    /// For each state type the probability with which each primitive subtask is
-    /// selected, averaged over sampled states and the better half (Thesis 4.5.4);
-    /// `null` for a type of which the arena has no state.
+    /// For each state type the probability of selecting each primitive subtask, averaged over
+    /// sampled states and the better half (Thesis 4.5.4).
+    ///
+    /// `null` for a state type of which no state was found.
     pub selection_probabilities: Vec<Option<BTreeMap<String, f64>>>,
-    /// Whether the better half has one structure: evolution is over.
+    /// Whether the better half has one structure, which ends evolution.
     pub converged: bool,
-    /// Control steps of the run up to the end of this generation, the training of the
-    /// primitive subtasks included.
+    /// Control steps of the run up to the end of this generation, with the training of the
+    /// primitive subtasks.
     pub control_steps: u64,
 }
 
 impl GenerationRecord {
-    /// Whether every probability is a number; otherwise learning has diverged.
+    /// Returns whether every probability is finite. Otherwise learning has diverged.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         let by_type = self.selection_probabilities.iter().flatten();
         by_type.flat_map(BTreeMap::values).all(|p| p.is_finite())
     }
 
-    /// Mean time steps of a scored trial of the individual at a rank from 1.
+    /// Returns the mean time steps of a scored trial of the individual at `rank`, from 1.
     #[must_use]
     pub fn mean_trial_steps(&self, rank: usize) -> Option<f64> {
         let individual = self.individuals.get(rank.checked_sub(1)?)?;

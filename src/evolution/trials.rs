@@ -1,4 +1,4 @@
-//! One individual's generation: its trials.
+//! The trials of one individual in a generation (Algorithm 3.1, line 3).
 
 use rand::seq::SliceRandom;
 
@@ -10,8 +10,8 @@ use crate::learning::{Agent, Gate, Hierarchy, PrimitiveSet, Stopped};
 use crate::random::{Purpose, Stream, stream};
 use crate::worlds::World;
 
-/// Where the trials of a generation start, the same for every individual: first those
-/// of the unscored half, then those of the scored one.
+/// The starts of a generation's trials, the same for every individual: those of the unscored
+/// half, then those of the scored half.
 #[derive(Clone, Debug)]
 pub(super) struct TrialStarts<S> {
     all: Vec<S>,
@@ -36,12 +36,12 @@ impl<S> TrialStarts<S> {
     }
 }
 
-/// What came of an individual's generation.
+/// The results of an individual's trials.
 #[derive(Clone, Debug)]
 pub(super) struct TrialResults {
     /// Its hierarchy with what it has learned.
     pub(super) hierarchy: Hierarchy,
-    /// The primitive subtasks, changed if they go on learning.
+    /// The primitive set, which changes only where primitive subtasks learn.
     pub(super) primitives: PrimitiveSet,
     /// The scored trials, in the order in which they were run.
     pub(super) scored: Vec<TrialRecord>,
@@ -50,30 +50,34 @@ pub(super) struct TrialResults {
 }
 
 impl TrialResults {
-    /// Time steps over the scored trials; smaller is better (Thesis 4.2).
+    /// Returns the time steps over the scored trials. Smaller is better (Thesis 4.2).
     pub(super) fn fitness(&self) -> u64 {
         self.scored.iter().map(|trial| u64::from(trial.steps)).sum()
     }
 }
 
-/// Whether an individual runs only the scored half of the trials: it has learned in
-/// the generation before and shall have no advantage (Thesis 3.2).
+/// Returns whether an individual runs only the scored half of the trials.
+///
+/// A reproduced individual learned in the generation before; this takes its advantage away
+/// (Thesis 3.2).
 pub(super) fn is_experienced(individual: &Individual) -> bool {
     individual.origin == Origin::Reproduced
 }
 
-/// An individual that results through a generation, trial by trial (Algorithm 3.1, line 3):
-/// each half of the trials in an order of its own, an experienced one only the scored half.
+/// An individual's trials, run one by one.
+///
+/// Each half is run in an order of the individual's own. An experienced individual runs only
+/// the scored half.
 pub(super) struct IndividualTrials<'g, W: World> {
     generation: Generation<'g, W>,
     individual: &'g Individual,
     primitives: &'g PrimitiveSet,
-    /// Made when the first trial begins, by the thread that runs it.
+    /// Made by the thread that runs the first trial.
     agent: Option<Agent<'g, W>>,
     rng: Stream,
     first: usize,
     next: usize,
-    /// The half under way, in the order of its trials.
+    /// The order of the trials in the present half.
     order: Vec<usize>,
     scored: Vec<TrialRecord>,
     control_steps: u64,
@@ -86,8 +90,8 @@ pub(super) struct Generation<'g, W: World> {
     pub(super) seed: u64,
     pub(super) number: u64,
     pub(super) gate: &'g Gate,
-    /// Is told of every trial that is over.
-    pub(super) trial_over: &'g (dyn Fn() + Sync),
+    /// Called after every trial.
+    pub(super) trial_ended: &'g (dyn Fn() + Sync),
 }
 
 impl<W: World> Clone for Generation<'_, W> {
@@ -110,9 +114,10 @@ impl<'g, W: World> IndividualTrials<'g, W> {
             number,
             ..
         } = generation;
-        let first = match is_experienced(individual) {
-            true => starts.half(),
-            false => 0,
+        let first = if is_experienced(individual) {
+            starts.half()
+        } else {
+            0
         };
         Self {
             generation,
@@ -128,7 +133,7 @@ impl<'g, W: World> IndividualTrials<'g, W> {
         }
     }
 
-    /// Runs the trials that are left.
+    /// Runs all trials that are left.
     pub(super) fn run(mut self) -> Result<TrialResults, Stopped> {
         while self.left().is_some() {
             self.turn()?;
@@ -137,7 +142,7 @@ impl<'g, W: World> IndividualTrials<'g, W> {
     }
 
     pub(super) fn into_results(mut self) -> TrialResults {
-        let agent = self.agent.take().unwrap_or_else(|| self.untrained());
+        let agent = self.agent.take().unwrap_or_else(|| self.new_agent());
         let (hierarchy, primitives) = agent.into_parts();
         TrialResults {
             hierarchy,
@@ -147,7 +152,7 @@ impl<'g, W: World> IndividualTrials<'g, W> {
         }
     }
 
-    fn untrained(&self) -> Agent<'g, W> {
+    fn new_agent(&self) -> Agent<'g, W> {
         let hierarchy = self.individual.hierarchy.clone();
         let experiment = self.generation.experiment;
         experiment.agent(hierarchy, self.primitives.clone())
@@ -157,37 +162,36 @@ impl<'g, W: World> IndividualTrials<'g, W> {
 impl<W: World> PooledTask for IndividualTrials<'_, W> {
     type Error = Stopped;
 
-    /// Control steps, if the trials to come are as long as those that were and one at the
-    /// limit: a first trial that happens to be short must not put off a long results.
+    /// Estimates the control steps left. Future trials are taken to be as long as the mean of
+    /// the past ones and one at the limit, so that an individual whose first trial is short
+    /// is not left until the end.
     fn left(&self) -> Option<f64> {
         let evolution = &self.generation.experiment.scenario.evolution;
-        let to_come = self.generation.starts.all.len() - self.next;
-        let over = self.next - self.first;
+        let left = self.generation.starts.all.len() - self.next;
+        let past = self.next - self.first;
         let steps = self.control_steps as f64 + f64::from(evolution.trial_step_limit);
-        let mean = steps / (over + 1) as f64;
-        (to_come > 0).then_some(to_come as f64 * mean)
+        let mean = steps / (past + 1) as f64;
+        (left > 0).then_some(left as f64 * mean)
     }
 
-    /// One trial.
+    /// Runs one trial.
     fn turn(&mut self) -> Result<(), Stopped> {
         let Generation {
             experiment,
             starts,
             gate,
-            trial_over,
+            trial_ended,
             ..
         } = self.generation;
         let half = starts.half();
-        let (half_start, is_scored) = match self.next < half {
-            true => (0, false),
-            false => (half, true),
-        };
+        let is_scored = self.next >= half;
+        let half_start = if is_scored { half } else { 0 };
         if self.next == half_start {
             self.order = shuffled(half, &mut self.rng);
         }
         let start = &starts.all[half_start + self.order[self.next - half_start]];
         let limit = experiment.scenario.evolution.trial_step_limit;
-        let mut agent = self.agent.take().unwrap_or_else(|| self.untrained());
+        let mut agent = self.agent.take().unwrap_or_else(|| self.new_agent());
         let trial = agent.run_trial(start, limit, &mut self.rng, gate)?;
         self.agent = Some(agent);
         self.control_steps += u64::from(trial.steps);
@@ -198,7 +202,7 @@ impl<W: World> PooledTask for IndividualTrials<'_, W> {
             });
         }
         self.next += 1;
-        trial_over();
+        trial_ended();
         Ok(())
     }
 }

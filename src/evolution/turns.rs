@@ -1,25 +1,26 @@
-//! Tasks that are done in turns, so that threads come to the end together.
+//! A scheduler that always advances the task with the most work left, so that all threads
+//! finish at about the same time.
 
 /// Work that is done in turns.
 pub(crate) trait PooledTask: Send {
-    /// Why a turn can fail.
+    /// The error of a turn.
     type Error: Send;
 
-    /// An estimate of the work that is left, in a unit that all tasks share; `None` at
-    /// the end.
+    /// Estimates the work left, in a unit that all tasks share. Returns `None` when the task is
+    /// finished.
     fn left(&self) -> Option<f64>;
 
-    /// Does one turn.
+    /// Runs one turn.
     fn turn(&mut self) -> Result<(), Self::Error>;
 }
 
-/// A task and its place among all.
+/// A task and its place in the order of all tasks.
 pub(super) struct Numbered<T> {
     number: usize,
     pub(super) task: T,
 }
 
-/// Where threads leave a task after a turn and take the next.
+/// The tasks of several threads, which return one after each turn and take the next.
 pub(super) struct TaskPool<T: PooledTask> {
     waiting: Vec<Numbered<T>>,
     finished: Vec<Numbered<T>>,
@@ -40,8 +41,8 @@ impl<T: PooledTask> TaskPool<T> {
         pool
     }
 
-    /// The task with most left. A thread that finds none may go: the tasks that are not
-    /// here are in the hands of the other threads.
+    /// Takes the task with the most work left. A thread that gets `None` is done: all
+    /// unfinished tasks are held by other threads.
     pub(super) fn take(&mut self) -> Option<Numbered<T>> {
         if self.failed.is_some() {
             return None;
@@ -52,7 +53,7 @@ impl<T: PooledTask> TaskPool<T> {
         most.map(|(index, _)| self.waiting.swap_remove(index))
     }
 
-    /// Takes a task back after its turn, and gives the next.
+    /// Puts a task back after its turn and takes the next.
     pub(super) fn exchange(
         &mut self,
         back: Numbered<T>,
@@ -65,7 +66,7 @@ impl<T: PooledTask> TaskPool<T> {
         self.take()
     }
 
-    /// All tasks in their order, when all threads have gone.
+    /// Returns all tasks in their order. Call it when all threads are done.
     pub(super) fn into_finished(mut self) -> Result<Vec<T>, T::Error> {
         if let Some(error) = self.failed {
             return Err(error);
@@ -92,7 +93,7 @@ mod tests {
     use super::*;
     use crate::random::{Purpose, stream};
 
-    /// Counts down; fails at a number.
+    /// A task that counts down and fails at a given number.
     #[derive(Debug, PartialEq)]
     struct Countdown {
         left: u32,
@@ -126,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn tasks_are_finished_and_come_back_in_their_order() {
+    fn tasks_are_finished_and_returned_in_their_order() {
         for threads in [1, 2, 5] {
             let workers = Workers::new(threads).unwrap();
             let tasks = (1..40).map(|n| countdown(n % 7 + 1)).collect();
@@ -151,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn the_task_with_most_left_is_next() {
+    fn the_task_with_the_most_work_left_is_next() {
         let mut pool = TaskPool::new(vec![countdown(3), countdown(9), countdown(5)]);
         let mut longest = pool.take().unwrap();
         assert_eq!(longest.task.left, 9);
@@ -160,7 +161,7 @@ mod tests {
         assert_eq!(next.task.left, 5);
     }
 
-    /// A life of trials whose lengths nobody knows before.
+    /// Trials whose lengths are not known in advance.
     struct Trials {
         lengths: Vec<f64>,
         over: usize,
@@ -182,17 +183,17 @@ mod tests {
         }
     }
 
-    /// Threads on a clock of their own: what this machine does otherwise plays no part.
+    /// Simulated threads with their own clocks, so that the load of the machine has no effect.
     #[test]
-    fn two_threads_come_to_the_end_together() {
+    fn two_threads_finish_at_about_the_same_time() {
         let mut rng = stream(1, 0, 0, Purpose::Trials);
         let (mut work, mut wall) = (0.0, 0.0);
         for _ in 0..30 {
-            // Lives that differ threefold, of trials that differ as chance will have it.
-            let lives: Vec<_> = (0..16)
-                .map(|life| {
+            // Mean lengths differ up to threefold; lengths vary at random around them.
+            let tasks: Vec<_> = (0..16)
+                .map(|number| {
                     let mean = 100.0 * 3_f64.powf(rng.random());
-                    let trials = if life < 2 { 8 } else { 16 };
+                    let trials = if number < 2 { 8 } else { 16 };
                     let lengths = (0..trials).map(|_| -mean * f64::ln(1.0 - rng.random::<f64>()));
                     Trials {
                         lengths: lengths.collect(),
@@ -200,12 +201,12 @@ mod tests {
                     }
                 })
                 .collect();
-            work += lives.iter().flat_map(|life| &life.lengths).sum::<f64>();
-            let mut pool = TaskPool::new(lives);
+            work += tasks.iter().flat_map(|task| &task.lengths).sum::<f64>();
+            let mut pool = TaskPool::new(tasks);
             let mut threads = [0.0, 0.0].map(|clock| (clock, pool.take()));
             while threads.iter().any(|(_, held)| held.is_some()) {
                 let busy = threads.iter_mut().filter(|(_, held)| held.is_some());
-                // The thread whose turn is over first comes to the pool first.
+                // The thread whose turn ends first returns to the pool first.
                 let turn = |held: &Option<Numbered<Trials>>| {
                     let task = &held.as_ref().unwrap().task;
                     task.lengths[task.over]

@@ -1,4 +1,4 @@
-//! Who lives on, who dies, who mates.
+//! Which individuals are reproduced, die and become parents.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use maxq_lab::evolution::{EvolutionState, Individual, Origin};
 use super::trees::chance;
 use super::{assert_frequencies, experiment, individuals, state, step, still_scenario};
 
-/// All pairs of sites are valid here, so crossover changes no probability.
+/// A tree in which all pairs of sites are valid, so that crossover never fails.
 const SWAPPABLE: &str = "(Root Wander Wander)";
 
 fn ids(state: &EvolutionState) -> Vec<u64> {
@@ -28,7 +28,7 @@ fn parents(individual: &Individual) -> Option<[u64; 2]> {
 }
 
 #[test]
-fn the_best_live_on_with_what_they_have_learned_and_the_worst_leave_nothing() {
+fn the_best_are_reproduced_with_their_learned_values_and_the_worst_have_no_offspring() {
     let experiment = experiment(still_scenario());
     let catalogue = experiment.catalogue();
     let trees = experiment.scenario.evolution.initial_population.clone();
@@ -45,9 +45,9 @@ fn the_best_live_on_with_what_they_have_learned_and_the_worst_leave_nothing() {
                 .find(|individual| individual.id == id)
         };
         for best in &old[..2] {
-            let survivor = find(best.id).expect("the best two live on");
+            let survivor = find(best.id).expect("the best two are reproduced");
             assert_eq!(survivor.origin, Origin::Reproduced);
-            // Nothing is learned in this scenario: these are the values that it brought.
+            // Nothing is learned in this scenario, so the values have not changed.
             assert_eq!(survivor.hierarchy, best.hierarchy);
         }
         assert!(old[2..].iter().all(|dead| find(dead.id).is_none()));
@@ -67,7 +67,7 @@ fn the_best_live_on_with_what_they_have_learned_and_the_worst_leave_nothing() {
 }
 
 #[test]
-fn ids_never_come_back_and_the_population_keeps_its_size() {
+fn ids_are_never_used_again_and_the_population_keeps_its_size() {
     let experiment = experiment(still_scenario());
     let mut rng = chance(1);
     let trees = experiment.scenario.evolution.initial_population.clone();
@@ -80,13 +80,16 @@ fn ids_never_come_back_and_the_population_keeps_its_size() {
         now = step(&experiment, 1, now).1;
         assert_eq!((now.generation, now.individuals.len()), (generation, 8));
         for id in ids(&now) {
-            assert!(before.contains(&id) || seen.insert(id), "{id} came back");
+            assert!(
+                before.contains(&id) || seen.insert(id),
+                "{id} was used again"
+            );
         }
     }
     assert_eq!(seen.len(), 8 + 19 * 6, "six new individuals a generation");
 }
 
-/// Tournaments of two among the six survivors, for the second parent among the rest.
+/// Tournaments of two among the six survivors; for the second parent among the other five.
 #[test]
 fn parents_are_winners_of_tournaments() {
     let experiment = experiment(still_scenario());
@@ -118,7 +121,7 @@ fn parents_are_winners_of_tournaments() {
 }
 
 /// The probability that a rank among the first six wins a tournament of two different
-/// candidates that leaves some ranks out.
+/// candidates when the ranks `out` are left out.
 fn wins(rank: u64, out: &[u64]) -> f64 {
     let candidates: Vec<u64> = (0..6).filter(|rank| !out.contains(rank)).collect();
     let count = candidates.len() as f64;
@@ -126,8 +129,8 @@ fn wins(rank: u64, out: &[u64]) -> f64 {
     worse / (count * (count - 1.0) / 2.0)
 }
 
-/// Under the rules of the task there is always a valid pair of sites: every tree needs
-/// Avoid or Wander. So a depth limit that nothing obeys stands in for other worlds.
+/// In the foraging task there is always a valid pair of sites, because every tree needs Avoid
+/// or Wander. A depth limit that no tree obeys stands in for other worlds.
 #[test]
 fn where_no_crossover_is_valid_parents_are_copied() {
     let mut experiment = experiment(still_scenario());
@@ -151,6 +154,6 @@ fn where_no_crossover_is_valid_parents_are_copied() {
     assert_eq!((copies, new.individuals.len()), (6, 8));
     let unique: BTreeSet<_> = ids(&new).into_iter().collect();
     assert_eq!(unique.len(), 8);
-    // Two trials of two steps; the two that live on run one of them.
+    // Two trials of two steps; the two reproduced individuals run one of them.
     assert_eq!(record.control_steps, 1000 + 6 * 4 + 2 * 2);
 }

@@ -1,4 +1,4 @@
-//! A generation: who runs which trials, what counts, what is reported, when it ends.
+//! A generation: which trials run, which are scored, what is recorded, when evolution ends.
 
 use std::collections::BTreeSet;
 use std::sync::Mutex;
@@ -15,10 +15,10 @@ use maxq_lab::worlds::{Catalogue, Probe, StateType, SubtaskId, World};
 use super::trees::chance;
 use super::{assert_frequencies, experiment, foraging, individuals, state, step, still_scenario};
 
-/// A trial as the world saw it: where it started, and its steps.
+/// A trial as seen by the world: its start and its steps.
 type Trial = ([u64; 3], u32);
 
-/// The foraging world, which writes down every trial.
+/// The foraging world with a log of every trial.
 struct Logged {
     inner: ForagingWorld,
     trials: Mutex<Vec<Trial>>,
@@ -74,13 +74,13 @@ impl World for Logged {
     }
 }
 
-/// The starts of some trials, whatever their order.
+/// The starts of some trials, without their order.
 fn starts(trials: &[Trial]) -> BTreeSet<[u64; 3]> {
     trials.iter().map(|trial| trial.0).collect()
 }
 
-/// Four trials a half, long enough that some deliver.
-fn living_scenario() -> Scenario {
+/// A scenario with four trials in each half, long enough that some deliver.
+fn learning_scenario() -> Scenario {
     let mut scenario = Scenario::load("smoke").unwrap();
     scenario.evolution.trials_per_generation = 8;
     scenario.evolution.trial_step_limit = 300;
@@ -90,7 +90,7 @@ fn living_scenario() -> Scenario {
 
 #[test]
 fn all_run_the_same_starts_and_only_the_scored_half_counts() {
-    let scenario = living_scenario();
+    let scenario = learning_scenario();
     let inner = foraging(&scenario);
     let trials = Mutex::default();
     let experiment = Experiment::new(scenario, Logged { inner, trials }).unwrap();
@@ -110,7 +110,7 @@ fn all_run_the_same_starts_and_only_the_scored_half_counts() {
             .iter()
             .filter(|r| r.origin == Origin::Reproduced);
         let reproduced = reproduced.count();
-        // One thread runs the individuals one after the other, the reproduced last.
+        // A single thread runs the individuals one after the other, the reproduced last.
         let (new, experienced) = all.split_at(all.len() - 4 * reproduced);
         assert_eq!(new.len(), 8 * (8 - reproduced));
         let (unscored, scored) = (starts(&new[..4]), starts(&new[4..8]));
@@ -135,7 +135,7 @@ fn all_run_the_same_starts_and_only_the_scored_half_counts() {
                 "the reproduced run the scored half alone"
             );
         }
-        // An order of its own for each.
+        // Each individual has its own order.
         let halves = all
             .chunks(4)
             .map(|half| half.iter().map(|t| t.0).collect::<Vec<_>>());
@@ -175,12 +175,13 @@ fn all_run_the_same_starts_and_only_the_scored_half_counts() {
         let ranks = record.individuals.iter().map(|individual| individual.rank);
         assert!(ranks.eq(1..=8));
     }
-    // 3 generations of two halves with 24 orders each; all lives in one order would be 6.
+    // 3 generations of two halves with 24 possible orders each. One order for all
+    // individuals would give 6.
     assert!(orders.len() > 20, "{} orders", orders.len());
 }
 
-/// Trials of two steps, in which nobody can deliver: all are equal, and the individual
-/// made first stays first. So the order is the given one, and tests choose the ranks.
+/// Runs trials of two steps, in which no individual can deliver. All are equal, so they are
+/// ranked in the given order.
 fn ranked(trees: [&str; 8]) -> GenerationRecord {
     let experiment = experiment(still_scenario());
     let mut rng = chance(1);
@@ -263,7 +264,7 @@ fn differences_are_those_to_the_best_averaged_over_the_better_half() {
     }
 }
 
-/// The control: ranks by chance, whatever the fitness.
+/// The control `selection: random`: ranks do not depend on fitness.
 #[test]
 fn random_selection_ranks_by_chance() {
     let mut scenario = still_scenario();
@@ -283,7 +284,7 @@ fn random_selection_ranks_by_chance() {
     }
 
     // With different fitness the order is not that of fitness.
-    let mut scenario = living_scenario();
+    let mut scenario = learning_scenario();
     scenario.evolution.selection = Selection::Random;
     let experiment_ = experiment(scenario);
     let trees = experiment_.scenario.evolution.initial_population.clone();

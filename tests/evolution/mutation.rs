@@ -1,4 +1,4 @@
-//! Pruning and growth: one subtree more or less, and learned values where they belong.
+//! Pruning and growth: one subtree more or less, and learned values in the right places.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +15,7 @@ use super::crossover::{WORLD, nested, path, values};
 use super::trees::{Nested, chance, is_composite, valid_tree};
 use super::{assert_frequencies, experiment, individuals, learned, state, step, still_scenario};
 
-/// Environment 1, where every offspring is mutated.
+/// Environment 1 with these probabilities of mutation.
 fn scenario(prune: f64, grow: f64) -> Scenario {
     let mut scenario = Scenario::load("environment-1").unwrap();
     scenario.evolution.prune_probability = prune;
@@ -42,7 +42,7 @@ fn without(tree: &Nested, place: usize) -> Nested {
     left
 }
 
-/// The trees that pruning can lead to, one for each node that can be spared.
+/// The trees that pruning can give, one for each node without which the tree is valid.
 fn prunings(tree: &Nested) -> Vec<Nested> {
     let places = 1..tree.nodes().len();
     let all = places.map(|place| without(tree, place));
@@ -90,7 +90,7 @@ proptest! {
         let after = nested(&new, catalogue);
         let possible = prunings(&before);
         let [Mutation::Pruned { parent, subtree }] = new.origin.mutations() else {
-            // 200 draws found nothing: then there is little to find.
+            // 200 draws found nothing, so there is little to find.
             prop_assert!(possible.len() * 10 < before.nodes().len(), "{}", before.text());
             prop_assert_eq!(new, old);
             return Ok(());
@@ -106,7 +106,7 @@ proptest! {
                 prop_assert_eq!(value.temperature, known[name].temperature);
                 let place = (0..gone.len()).find(|&i| left.get(i) != Some(&gone[i])).unwrap();
                 let rest: Vec<_> = [&gone[..place], &gone[place + 1..]].concat();
-                prop_assert_eq!(left, rest, "all but one are as they were");
+                prop_assert_eq!(left, rest, "all but one are unchanged");
             } else {
                 prop_assert_eq!(value, known[name]);
             }
@@ -149,9 +149,9 @@ proptest! {
         }
     }
 
-    /// What an offspring says of its making stays true when it is mutated.
+    /// The origin of an offspring stays true when it is mutated.
     #[test]
-    fn what_is_inherited_and_what_is_not_is_told_of_every_composite(seed in any::<u64>()) {
+    fn the_origin_says_of_every_composite_subtask_whether_it_was_inherited(seed in any::<u64>()) {
         let catalogue = WORLD.catalogue();
         let (a, b) = (any_individual(seed, catalogue), any_individual(seed ^ 1, catalogue));
         let mut draws = stream(seed, 0, 0, Purpose::Breeding);
@@ -168,7 +168,7 @@ proptest! {
         let told = inherited.iter().map(|part| &part.subtask).chain(reset);
         let composites: BTreeSet<_> = values(&mutant, catalogue).into_keys().collect();
         let told: Vec<_> = told.map(String::as_str).collect();
-        prop_assert_eq!(told.len(), composites.len(), "each is told of once");
+        prop_assert_eq!(told.len(), composites.len(), "each is listed once");
         prop_assert_eq!(told.into_iter().collect::<BTreeSet<_>>(), composites);
         let pruned = |name: &str| mutations.iter().any(|mutation| {
             matches!(mutation, Mutation::Pruned { parent, .. } if parent == name)
@@ -181,7 +181,7 @@ proptest! {
 }
 
 #[test]
-fn every_node_that_can_be_spared_is_as_likely_as_any_other() {
+fn every_node_that_can_be_pruned_is_equally_likely() {
     let catalogue = WORLD.catalogue();
     let text =
         "(Root Avoid Wander (Capture (FindBattery Avoid Wander) ApproachBattery) ApproachNest)";
@@ -199,10 +199,9 @@ fn every_node_that_can_be_spared_is_as_likely_as_any_other() {
     assert_frequencies(&counts, &[1.0 / 8.0; 8]);
 }
 
-/// Whether it is a primitive subtask or a composite one that nearly always has to be drawn
-/// again.
+/// Even where a composite child needs many draws until its subtree is valid.
 #[test]
-fn every_child_that_can_grow_is_as_likely_as_any_other() {
+fn every_child_that_can_grow_is_equally_likely() {
     let catalogue = WORLD.catalogue();
     let tree = parse(
         "(Root Avoid Wander ApproachBattery ApproachNest)",
@@ -229,9 +228,9 @@ fn every_child_that_can_grow_is_as_likely_as_any_other() {
     assert_frequencies(&counts, &[1.0 / 7.0; 7]);
 }
 
-/// Runs without mutation are what they were before there was any.
+/// Runs without mutation are the same as before mutation existed.
 #[test]
-fn without_mutation_nothing_is_drawn() {
+fn without_mutation_no_random_number_is_drawn() {
     let catalogue = WORLD.catalogue();
     let old = any_individual(5, catalogue);
     let mut draws = stream(1, 0, 0, Purpose::Breeding);
@@ -242,7 +241,7 @@ fn without_mutation_nothing_is_drawn() {
 }
 
 #[test]
-fn offspring_are_mutated_as_often_as_the_scenario_says_and_the_best_never() {
+fn offspring_are_mutated_with_the_given_probabilities_and_the_best_never() {
     let mut settings = still_scenario();
     settings.evolution.prune_probability = 0.25;
     settings.evolution.grow_probability = 0.5;
@@ -267,7 +266,7 @@ fn offspring_are_mutated_as_often_as_the_scenario_says_and_the_best_never() {
         }
     }
     assert_eq!(offspring, 2400);
-    // These trees can nearly always grow, but some have nothing to spare.
+    // These trees can nearly always grow, but some have no node that can be pruned.
     assert_frequencies(&[grown, offspring - grown], &[0.5, 0.5]);
     assert!((400..=600 + 110).contains(&pruned), "{pruned}");
 }

@@ -13,12 +13,13 @@ use super::{experiment, individuals, learned, state, step, still_scenario, untra
 
 type Percept = [f32; INPUTS];
 
-/// A world in which nothing moves: an agent in it chooses in one state again and again.
-struct Still {
+/// A world in which nothing moves, so that an agent chooses in the same state again and
+/// again.
+struct Frozen {
     catalogue: Catalogue,
 }
 
-impl World for Still {
+impl World for Frozen {
     type Start = (StateType, Percept);
     type State = (StateType, Percept);
     type Percept = Percept;
@@ -46,10 +47,10 @@ impl World for Still {
     }
 }
 
-/// Remembers which node acted last.
+/// Records which node acted last.
 struct Last(usize);
 
-impl Observer<Still> for Last {
+impl Observer<Frozen> for Last {
     fn acted(&mut self, node: usize, _: usize, _: f32, _: &(StateType, Percept)) {
         self.0 = node;
     }
@@ -57,14 +58,14 @@ impl Observer<Still> for Last {
 
 const SAMPLES: usize = 20;
 
-/// How often an agent ends in each primitive subtask, in the same samples.
+/// Counts how often an agent ends in each primitive subtask, in the same samples.
 fn frequencies(
     experiment: &maxq_lab::evolution::Experiment<maxq_lab::worlds::foraging::ForagingWorld>,
     hierarchy: &Hierarchy,
 ) -> Vec<Vec<f64>> {
     const DRAWS: u32 = 500;
     let catalogue = experiment.catalogue();
-    let world = Still {
+    let world = Frozen {
         catalogue: catalogue.clone(),
     };
     let encoder = Encoder::new(catalogue);

@@ -1,4 +1,4 @@
-//! What an agent needs: a scenario, its world, trained primitive subtasks.
+//! The surroundings of an agent: a scenario, its world and a trained primitive set.
 
 use maxq_lab::evolution::{Experiment, Workers};
 use maxq_lab::hierarchy::parse;
@@ -10,20 +10,20 @@ use maxq_lab::worlds::foraging::ForagingWorld;
 
 use super::Recorder;
 
-/// Longest trial.
+/// The longest trial, in time steps.
 pub const STEP_LIMIT: u32 = 20_000;
 
-/// A world, its scenario, and primitive subtasks trained for a short while.
+/// A scenario with its world, and a primitive set trained for a short time.
 pub struct Lab {
     /// The scenario and its world.
     pub experiment: Experiment<ForagingWorld>,
     model: ForagingSettings,
-    /// The primitive subtasks.
+    /// The primitive set.
     pub primitives: PrimitiveSet,
 }
 
 impl Lab {
-    /// The scenario with these settings.
+    /// Loads a scenario with these settings.
     pub fn new(scenario: &str, settings: &[&str]) -> Self {
         let primitives = [
             "avoid",
@@ -59,7 +59,7 @@ impl Lab {
         self.experiment.untrained(tree)
     }
 
-    /// An agent with this hierarchy.
+    /// An agent with the given hierarchy.
     pub fn agent(&self, hierarchy: Hierarchy) -> Agent<'_, ForagingWorld> {
         Agent::new(
             &self.experiment.world,
@@ -71,7 +71,7 @@ impl Lab {
         )
     }
 
-    /// A recorder of what an agent does.
+    /// A recorder of an agent's events.
     pub fn recorder(&self) -> Recorder<'_> {
         Recorder {
             world: &self.experiment.world,

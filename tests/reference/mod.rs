@@ -1,9 +1,9 @@
-//! MAXQ-Q once more: slow, plain, recursive, in double precision.
+//! A second MAXQ-Q: slow, plain, recursive, in double precision.
 //!
-//! [`MaxqQ`] is Thesis Algorithm 2.4 with Eq. 3.2 to 3.9 and the corrections of the
-//! method, line by line with the symbols of the pseudo-code. Values are computed from
-//! scratch by Algorithm 2.5 whenever one is needed, nothing is shared with the library
-//! but the tree type and the settings. It does not act: it replays what an agent did.
+//! [`MaxqQ`] is Thesis Algorithm 2.4 with Eq. 3.2 to 3.9 and the corrections listed in
+//! `src/learning/README.md`, line by line with the symbols of the pseudo-code. Each value is
+//! computed from scratch by Algorithm 2.5 whenever it is needed. It shares only the tree type
+//! and the settings with the library. It does not act: it replays the actions of an agent.
 
 mod lab;
 mod replay;
@@ -20,21 +20,20 @@ use maxq_lab::worlds::Catalogue;
 use maxq_lab::worlds::foraging::FeatureSettings;
 use subtasks::{Input, phi};
 
-/// Two children whose values differ by less than this can be swapped by the rounding
-/// of single precision: then a* is whichever the agent took.
+/// Children whose values differ by less than this can be swapped by rounding in single
+/// precision. Then a* is the one that the agent took.
 const TIE: f64 = 2e-4;
 
 /// When C~(i, s', a*) of lines 16 and 17 is read.
 ///
 /// Inside the loop of line 15 an update can change it only if a* is the child a that
-/// returned. A child that terminated cannot act in s', so it is not a*: the two
-/// readings differ only in a trial that was cut off at the step limit.
+/// returned. A child that terminated cannot act in s', so it is not a*. The two readings
+/// differ only in a trial truncated at the step limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reading {
-    /// Once, before the loop: Eq. 3.4 and 3.5 with all C of their right sides as they
-    /// were when the child returned.
+    /// Once, before the loop, with the values at the time when the child returned.
     BeforeTheLoop,
-    /// Anew for every state of childSeq, as the pseudo-code reads literally.
+    /// Again for every state of childSeq, as the pseudo-code reads literally.
     InTheLoop,
 }
 
@@ -71,22 +70,22 @@ impl State {
     }
 }
 
-/// What was seen while replaying, so that a test can tell that it tested something.
+/// Counts of what a replay met, so that a test can show that it tested something.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
     /// Updates compared.
     pub updates: usize,
-    /// Updates of states further than one step from the child's termination.
+    /// Updates of states more than one step before the child's termination.
     pub distant_updates: usize,
     /// Transitions with a pseudo-reward of -1.
     pub pseudo_rewards: usize,
-    /// Trials cut off at the step limit.
+    /// Trials truncated at the step limit.
     pub truncated: usize,
     /// Trials that ended with a delivery.
     pub delivered: usize,
-    /// Times that a* was among near equals.
+    /// Times that a* was one of several children with nearly equal values.
     pub ties: usize,
-    /// Largest difference to an error of the agent.
+    /// The largest difference from an error of the agent.
     pub worst_error: f64,
 }
 
@@ -111,7 +110,7 @@ pub struct MaxqQ<'a> {
     replayed: Vec<Event>,
     next: usize,
     steps_left: u32,
-    /// What was seen so far.
+    /// Counts of what the replay met so far.
     pub seen: Seen,
 }
 
@@ -197,7 +196,7 @@ impl<'a> MaxqQ<'a> {
             self.steps_left -= 1;
             return (seq, s_next);
         }
-        // 9: while T_i(s) is false; at the step limit all subtasks return as they are.
+        // 9: while T_i(s) is false; at the step limit all subtasks return.
         while !self.terminal(i, &s) && self.steps_left > 0 {
             let a = self.chosen(i, &s);
             let (mut child_seq, s_next) = self.maxq_q(a, s);
@@ -386,7 +385,7 @@ fn learn(theta: &mut [f64], step: f64, features: &[f64], at: usize) {
     }
 }
 
-/// What the agent did, taken in order.
+/// The recorded events of the agent, in order.
 impl MaxqQ<'_> {
     fn take(&mut self) -> Event {
         let event = self.replayed.get(self.next).cloned();
@@ -394,7 +393,7 @@ impl MaxqQ<'_> {
         event.expect("the agent did less")
     }
 
-    /// 10: the child that the agent chose; it can act.
+    /// 10: the child that the agent chose, which must be able to act.
     fn chosen(&mut self, i: usize, s: &State) -> usize {
         let event = self.take();
         let Event::Chose { node, child } = event else {

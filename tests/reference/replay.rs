@@ -1,4 +1,4 @@
-//! What an agent did in a trial, recorded through the library's `Observer`.
+//! The events of a trial, recorded through the library's `Observer`.
 
 use maxq_lab::learning::{Observer, Update};
 use maxq_lab::worlds::World;
@@ -7,7 +7,7 @@ use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld};
 
 use super::State;
 
-/// A state, opaque to comparisons of events.
+/// The state after an action. Comparisons of events look at its type only.
 #[derive(Clone, Debug)]
 pub struct Led(Box<State>);
 
@@ -24,7 +24,7 @@ impl PartialEq for Led {
     }
 }
 
-/// Something that the agent did.
+/// An event of an agent.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// A composite node chose a child.
@@ -42,13 +42,13 @@ pub enum Event {
     Terminated { node: usize, at_goal: bool },
 }
 
-/// Writes down what an agent does.
+/// Records the events of an agent.
 pub struct Recorder<'w> {
-    /// The world, which knows what the agent perceives.
+    /// The world, which computes what the agent perceives.
     pub world: &'w ForagingWorld,
     /// The settings of the features.
     pub features: FeatureSettings,
-    /// What the agent did.
+    /// The recorded events.
     pub events: Vec<Event>,
 }
 

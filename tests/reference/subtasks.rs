@@ -1,4 +1,4 @@
-//! Thesis Tables 4.1 to 4.3 and 4.6 and Eq. 2.22, written down once more.
+//! A second copy of Thesis Tables 4.1 to 4.3 and 4.6 and of Eq. 2.22.
 
 use maxq_lab::worlds::foraging::{FeatureSettings, RbfWidth};
 
@@ -9,7 +9,7 @@ const PROXIMITY: [usize; 5] = [0, 1, 2, 3, 4];
 const ANGLE: usize = 5;
 const DISTANCE: usize = 6;
 
-/// What a subtask's value functions look at (Table 4.6).
+/// The inputs of a subtask's value functions (Table 4.6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Input {
     /// The proximity sensors.
@@ -29,7 +29,7 @@ pub struct Row {
     pub active: &'static [usize],
     /// The state types that are its goal; none for a primitive subtask.
     pub goal: &'static [usize],
-    /// What its value functions look at.
+    /// The inputs of its value functions.
     pub input: Input,
     /// Whether it is primitive.
     pub primitive: bool,
@@ -65,8 +65,8 @@ pub fn row(name: &str) -> Row {
     }
 }
 
-/// Eq. 2.22 on the full grid: one exponential a centre, divided by their sum. The
-/// grid's last input varies fastest.
+/// Eq. 2.22 on the full grid: one exponential for each centre, divided by their sum. The last
+/// input of the grid varies fastest.
 pub fn phi(input: Input, percept: &[f32], model: &FeatureSettings) -> Vec<f64> {
     let proximity = PROXIMITY.map(|sensor| (sensor, model.proximity_centres));
     let axes: Vec<(usize, usize)> = match input {
@@ -89,7 +89,7 @@ pub fn phi(input: Input, percept: &[f32], model: &FeatureSettings) -> Vec<f64> {
     gaussians.iter().map(|gaussian| gaussian / sum).collect()
 }
 
-/// |s - c|^2 / 2 sigma^2 for one centre of the grid, sigma being each axis's own.
+/// |s - c|^2 / 2 sigma^2 for one centre of the grid. Each axis has its own sigma.
 fn exponent(mut centre: usize, axes: &[(usize, usize)], percept: &[f32], width: RbfWidth) -> f64 {
     let mut exponent = 0.0;
     for &(input, centres) in axes.iter().rev() {

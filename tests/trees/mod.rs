@@ -1,4 +1,4 @@
-//! Random hierarchies of the foraging task, and its typing rules written down again.
+//! Random hierarchies of the foraging task, and a second copy of its typing rules.
 
 #![allow(dead_code)] // Each test file uses a part.
 
@@ -38,7 +38,7 @@ pub fn world() -> ForagingWorld {
     ForagingWorld::new(&model).unwrap()
 }
 
-/// A tree as nested lists, the plainest form there is.
+/// A tree as nested lists.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Nested {
     pub name: &'static str,
@@ -130,7 +130,7 @@ impl Nested {
         1 + self.children.iter().map(Self::depth).max().unwrap_or(0)
     }
 
-    /// Whether the tree obeys every rule of method.md section 4.
+    /// Returns whether the tree obeys every typing rule.
     pub fn obeys_the_rules(&self) -> bool {
         let mut composites = BTreeSet::new();
         let once = |node: &&Self| !is_composite(node.name) || composites.insert(node.name);
@@ -169,13 +169,14 @@ pub fn is_composite(name: &str) -> bool {
 /// Whether a child is allowed under a parent.
 fn allowed(child: &str, parent: &str) -> bool {
     let mut types = active(child).iter();
-    match is_composite(child) {
-        true => types.all(|t| active(parent).contains(t)),
-        false => types.any(|t| active(parent).contains(t)),
+    if is_composite(child) {
+        types.all(|t| active(parent).contains(t))
+    } else {
+        types.any(|t| active(parent).contains(t))
     }
 }
 
-/// A valid tree with one node changed: renamed, robbed of its children, or given one.
+/// A valid tree with one node changed: renamed, replaced, without children or with one more.
 pub fn changed_tree(rng: &mut SmallRng) -> Nested {
     let mut tree = valid_tree(rng);
     let place = rng.random_range(0..tree.nodes().len());
@@ -217,9 +218,10 @@ fn grow(
     rng: &mut SmallRng,
     draw: &mut impl FnMut(&'static str, &mut SmallRng) -> &'static str,
 ) -> Nested {
-    let count = match is_composite(name) && depth < MAXIMUM_DEPTH {
-        true => rng.random_range(1..=4),
-        false => 0,
+    let count = if is_composite(name) && depth < MAXIMUM_DEPTH {
+        rng.random_range(1..=4)
+    } else {
+        0
     };
     let children = (0..count).map(|_| {
         let child = draw(name, rng);
@@ -231,7 +233,7 @@ fn grow(
     }
 }
 
-/// A generator for a number.
+/// A random generator with this seed.
 pub fn chance(seed: u64) -> SmallRng {
     SmallRng::seed_from_u64(seed)
 }
