@@ -21,8 +21,8 @@ const FIRST_TRIALS: usize = 60;
 const TRIALS: usize = 30;
 const STEP_LIMIT: u32 = 400;
 
-/// Trials of the first hierarchy of the initial population, and of the last: allocations of
-/// each in the later trials, and the steps that these took.
+/// Runs trials of the first and the last hierarchy of the initial population. Returns for each
+/// the allocations and the time steps of the later trials.
 struct Trials(Scenario);
 
 impl WorldFn for Trials {
@@ -73,7 +73,7 @@ fn a_control_step_allocates_no_memory() {
     }
 }
 
-/// Allocations that the selection probabilities in so many states of each type take.
+/// Counts the allocations for selection probabilities in this many states of each type.
 struct Probabilities(Scenario, usize);
 
 impl WorldFn for Probabilities {
