@@ -215,7 +215,7 @@ impl<'e, W: World> Evolution<'e, W> {
             let mut primitives = self.state.primitives.clone();
             let mut all = Vec::with_capacity(population.len());
             for individual in population {
-                let results = IndividualTrials::new(generation, individual, &primitives).run()?;
+                let results = IndividualTrials::new(&generation, individual, &primitives).run()?;
                 primitives = results.primitives.clone();
                 all.push(results);
             }
@@ -226,7 +226,7 @@ impl<'e, W: World> Evolution<'e, W> {
                 .primitives
                 .as_ref()
                 .unwrap_or(&self.state.primitives);
-            IndividualTrials::new(generation, individual, primitives)
+            IndividualTrials::new(&generation, individual, primitives)
         });
         let finished = self.workers.finish(tasks.collect())?;
         let results = finished

@@ -69,7 +69,7 @@ pub(super) fn is_experienced(individual: &Individual) -> bool {
 /// Each half is run in an order of the individual's own. An experienced individual runs only
 /// the scored half.
 pub(super) struct IndividualTrials<'g, W: World> {
-    generation: Generation<'g, W>,
+    generation: &'g Generation<'g, W>,
     individual: &'g Individual,
     primitives: &'g PrimitiveSet,
     /// Made by the thread that runs the first trial.
@@ -94,31 +94,15 @@ pub(super) struct Generation<'g, W: World> {
     pub(super) trial_ended: &'g (dyn Fn() + Sync),
 }
 
-impl<W: World> Clone for Generation<'_, W> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<W: World> Copy for Generation<'_, W> {}
-
 impl<'g, W: World> IndividualTrials<'g, W> {
     pub(super) fn new(
-        generation: Generation<'g, W>,
+        generation: &'g Generation<'g, W>,
         individual: &'g Individual,
         primitives: &'g PrimitiveSet,
     ) -> Self {
-        let Generation {
-            starts,
-            seed,
-            number,
-            ..
-        } = generation;
-        let first = if is_experienced(individual) {
-            starts.half()
-        } else {
-            0
-        };
+        let skips = is_experienced(individual);
+        let first = if skips { generation.starts.half() } else { 0 };
+        let (seed, number) = (generation.seed, generation.number);
         Self {
             generation,
             individual,
@@ -176,23 +160,17 @@ impl<W: World> PooledTask for IndividualTrials<'_, W> {
 
     /// Runs one trial.
     fn turn(&mut self) -> Result<(), Stopped> {
-        let Generation {
-            experiment,
-            starts,
-            gate,
-            trial_ended,
-            ..
-        } = self.generation;
-        let half = starts.half();
+        let generation = self.generation;
+        let half = generation.starts.half();
         let is_scored = self.next >= half;
         let half_start = if is_scored { half } else { 0 };
         if self.next == half_start {
             self.order = shuffled(half, &mut self.rng);
         }
-        let start = &starts.all[half_start + self.order[self.next - half_start]];
-        let limit = experiment.scenario.evolution.trial_step_limit;
+        let start = &generation.starts.all[half_start + self.order[self.next - half_start]];
+        let limit = generation.experiment.scenario.evolution.trial_step_limit;
         let mut agent = self.agent.take().unwrap_or_else(|| self.new_agent());
-        let trial = agent.run_trial(start, limit, &mut self.rng, gate)?;
+        let trial = agent.run_trial(start, limit, &mut self.rng, generation.gate)?;
         self.agent = Some(agent);
         self.control_steps += u64::from(trial.steps);
         if is_scored {
@@ -202,7 +180,7 @@ impl<W: World> PooledTask for IndividualTrials<'_, W> {
             });
         }
         self.next += 1;
-        trial_ended();
+        (generation.trial_ended)();
         Ok(())
     }
 }

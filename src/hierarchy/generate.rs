@@ -75,18 +75,9 @@ pub fn flat(catalogue: &Catalogue) -> Tree {
 #[must_use]
 pub fn random_tree(catalogue: &Catalogue, maximum_depth: usize, rng: &mut Stream) -> Tree {
     let drawn = (0..MAX_DRAWS).find_map(|_| {
-        let mut preorder = vec![(SubtaskId::ROOT, 1)];
-        let mut used = vec![false; catalogue.subtasks.len()];
-        grow(
-            SubtaskId::ROOT,
-            2,
-            maximum_depth,
-            catalogue,
-            &mut used,
-            &mut preorder,
-            rng,
-        );
-        let tree = Tree::from_preorder(&preorder)?;
+        let mut growth = Growth::new(SubtaskId::ROOT, catalogue, maximum_depth);
+        growth.grow(SubtaskId::ROOT, 2, rng);
+        let tree = Tree::from_preorder(&growth.preorder)?;
         check(&tree, catalogue, maximum_depth)
             .is_ok()
             .then_some(tree)
@@ -105,56 +96,60 @@ pub(crate) fn random_subtree(
     levels: usize,
     rng: &mut Stream,
 ) -> Tree {
-    let mut used = vec![false; catalogue.subtasks.len()];
+    let mut growth = Growth::new(subtask, catalogue, levels);
     for node in tree.nodes() {
-        used[node.subtask.index()] = true;
+        growth.used[node.subtask.index()] = true;
     }
-    used[subtask.index()] = true;
-    let mut preorder = vec![(subtask, 1)];
     if catalogue.subtask(subtask).is_composite() {
-        grow(subtask, 2, levels, catalogue, &mut used, &mut preorder, rng);
+        growth.grow(subtask, 2, rng);
     }
-    Tree::of(&preorder)
+    Tree::of(&growth.preorder)
 }
 
-fn grow(
-    parent: SubtaskId,
-    depth: usize,
+/// A random tree while it is drawn.
+struct Growth<'g> {
+    catalogue: &'g Catalogue,
     maximum_depth: usize,
-    catalogue: &Catalogue,
-    used: &mut [bool],
-    preorder: &mut Vec<(SubtaskId, usize)>,
-    rng: &mut Stream,
-) {
-    let states = catalogue.subtask(parent).active;
-    let mut children: Vec<_> = catalogue
-        .ids()
-        .filter(|&id| {
-            let subtask = catalogue.subtask(id);
-            let fits = if subtask.is_composite() {
-                let room = depth < maximum_depth && !used[id.index()];
-                room && id != SubtaskId::ROOT && subtask.active.is_subset_of(states)
+    /// For each subtask whether it may not be drawn again.
+    used: Vec<bool>,
+    preorder: Vec<(SubtaskId, usize)>,
+}
+
+impl<'g> Growth<'g> {
+    fn new(top: SubtaskId, catalogue: &'g Catalogue, maximum_depth: usize) -> Self {
+        let mut used = vec![false; catalogue.subtasks.len()];
+        used[top.index()] = true;
+        Self {
+            catalogue,
+            maximum_depth,
+            used,
+            preorder: vec![(top, 1)],
+        }
+    }
+
+    /// Draws the children of `parent`, which stand at `depth`, and all below them.
+    fn grow(&mut self, parent: SubtaskId, depth: usize, rng: &mut Stream) {
+        let catalogue = self.catalogue;
+        let states = catalogue.subtask(parent).active;
+        let may_be_child = |id: &SubtaskId| {
+            let subtask = catalogue.subtask(*id);
+            if subtask.is_composite() {
+                let free = *id != SubtaskId::ROOT && !self.used[id.index()];
+                depth < self.maximum_depth && free && subtask.active.is_subset_of(states)
             } else {
                 subtask.active.meets(states)
-            };
-            fits && rng.random()
-        })
-        .collect();
-    children.shuffle(rng);
-    for child in children {
-        if !catalogue.subtask(child).is_composite() {
-            preorder.push((child, depth));
-        } else if !std::mem::replace(&mut used[child.index()], true) {
-            preorder.push((child, depth));
-            grow(
-                child,
-                depth + 1,
-                maximum_depth,
-                catalogue,
-                used,
-                preorder,
-                rng,
-            );
+            }
+        };
+        let possible = catalogue.ids().filter(may_be_child);
+        let mut children: Vec<_> = possible.filter(|_| rng.random()).collect();
+        children.shuffle(rng);
+        for child in children {
+            if !catalogue.subtask(child).is_composite() {
+                self.preorder.push((child, depth));
+            } else if !std::mem::replace(&mut self.used[child.index()], true) {
+                self.preorder.push((child, depth));
+                self.grow(child, depth + 1, rng);
+            }
         }
     }
 }

@@ -98,7 +98,7 @@ impl<W: World> Agent<'_, W> {
         rng: &mut Stream,
         observer: &mut impl Observer<W>,
     ) {
-        // Without an active composite child nobody will learn from a list of states.
+        // Where only the root is active, the one state before the step is enough.
         if self.stack.len() > 1 {
             self.visited.push(self.parameters.encoder, &mut self.now);
         }
@@ -115,13 +115,14 @@ impl<W: World> Agent<'_, W> {
         self.perceive(&trial.state);
         trial.done = self.now.state_type == self.world.catalogue().terminal();
         if self.settings.primitive_learning != PrimitiveLearning::Frozen {
-            let map = self.parameters.plan.nodes[node].map;
-            let features = self
-                .parameters
-                .encoder
-                .encode(map, &mut self.before.features);
+            let Parameters {
+                encoder,
+                plan,
+                primitives,
+                ..
+            } = &mut self.parameters;
+            let features = encoder.encode(plan.nodes[node].map, &mut self.before.features);
             let step = self.settings.learning_rate as f32 * (reward - value);
-            let primitives = &mut self.parameters.primitives;
             primitives.at_mut(primitive).learn(action, features, step);
             self.before.forget_values();
         }
@@ -131,10 +132,8 @@ impl<W: World> Agent<'_, W> {
     /// returns too, in the parent's parent and so on.
     fn ascend(&mut self, truncated: bool, observer: &mut impl Observer<W>) {
         while let Some(&frame) = self.stack.last() {
-            let terminal = !self
-                .parameters
-                .plan
-                .can_act(frame.node, self.now.state_type);
+            let plan = &self.parameters.plan;
+            let terminal = !plan.can_act(frame.node, self.now.state_type);
             self.update(frame, terminal, observer);
             if self.stack.len() == 1 {
                 self.visited.clear();

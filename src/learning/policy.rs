@@ -22,7 +22,7 @@ pub struct Policy<'r> {
 }
 
 /// A walk down a hierarchy along all its choices.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Walk {
     /// The probability of each primitive subtask so far.
     totals: Vec<f64>,
@@ -32,17 +32,6 @@ struct Walk {
     preferences: Vec<f32>,
     /// Their probabilities.
     probabilities: Vec<f32>,
-}
-
-impl Walk {
-    fn among(primitives: usize) -> Self {
-        Self {
-            totals: vec![0.0; primitives],
-            shares: Vec::new(),
-            preferences: Vec::new(),
-            probabilities: Vec::new(),
-        }
-    }
 }
 
 impl<'r, W: World> Agent<'r, W> {
@@ -84,7 +73,10 @@ impl<'r> Policy<'r> {
     ) -> Self {
         Self {
             now: StateValues::new(&parameters, catalogue.terminal()),
-            walk: Walk::among(parameters.primitives.all().len()),
+            walk: Walk {
+                totals: vec![0.0; parameters.primitives.all().len()],
+                ..Walk::default()
+            },
             softmax: Softmax::new(settings),
             settings,
             parameters,
