@@ -109,12 +109,12 @@ impl Met {
 /// Asserts that the explanation has the events that an observer of the same step recorded.
 fn assert_same_events(explanation: &Explanation, events: &[Event]) {
     let levels = explanation.levels.iter().filter(|level| level.chose);
-    let told: Vec<_> = levels.map(|level| (level.node, level.active)).collect();
+    let explained: Vec<_> = levels.map(|level| (level.node, level.active)).collect();
     let seen = events.iter().filter_map(|event| match event {
         Event::Chose { node, child } => Some((*node, *child)),
         _ => None,
     });
-    assert_eq!(told, seen.collect::<Vec<_>>());
+    assert_eq!(explained, seen.collect::<Vec<_>>());
 
     let action = &explanation.action;
     let acted = events.iter().find_map(|event| match event {
@@ -126,10 +126,10 @@ fn assert_same_events(explanation: &Explanation, events: &[Event]) {
         } => Some((*node, *action, *reward)),
         _ => None,
     });
-    let told = (action.node, action.chosen, explanation.reward);
-    assert_eq!(Some(told), acted);
+    let explained = (action.node, action.chosen, explanation.reward);
+    assert_eq!(Some(explained), acted);
 
-    let told: Vec<_> = explanation
+    let explained: Vec<_> = explanation
         .update_traces
         .iter()
         .flat_map(|l| &l.updates)
@@ -138,7 +138,7 @@ fn assert_same_events(explanation: &Explanation, events: &[Event]) {
         Event::Updated(update) => Some(update),
         _ => None,
     });
-    assert_eq!(told, seen.collect::<Vec<_>>());
+    assert_eq!(explained, seen.collect::<Vec<_>>());
 
     let ended = explanation.update_traces.iter().filter_map(|update_trace| {
         update_trace

@@ -149,8 +149,8 @@ fn all_run_the_same_starts_and_only_the_scored_half_counts() {
         // Fitness: time steps over the scored trials.
         let halves: Vec<_> = new.chunks(8).map(|life| &life[4..]).collect();
         let halves = halves.into_iter().chain(experienced.chunks(4));
-        let mut lived: Vec<Vec<u32>> = halves.map(|h| h.iter().map(|t| t.1).collect()).collect();
-        let mut told: Vec<Vec<u32>> = Vec::new();
+        let mut ran: Vec<Vec<u32>> = halves.map(|h| h.iter().map(|t| t.1).collect()).collect();
+        let mut recorded: Vec<Vec<u32>> = Vec::new();
         for individual in &record.individuals {
             let steps: Vec<_> = individual.trials.iter().map(|trial| trial.steps).collect();
             assert_eq!(
@@ -160,11 +160,11 @@ fn all_run_the_same_starts_and_only_the_scored_half_counts() {
             for trial in &individual.trials {
                 assert!(trial.steps == 300 || (trial.delivered && trial.steps < 300));
             }
-            told.push(steps);
+            recorded.push(steps);
         }
-        lived.sort();
-        told.sort();
-        assert_eq!(lived, told);
+        ran.sort();
+        recorded.sort();
+        assert_eq!(ran, recorded);
         let steps: u64 = all.iter().map(|trial| u64::from(trial.1)).sum();
         assert_eq!(record.control_steps, steps_before + steps);
         let fitness = record
