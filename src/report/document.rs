@@ -53,8 +53,8 @@ fn claims(claims: &[JudgedClaim]) -> String {
          significantly fewer than under the control. Otherwise it is *undecided at this n*. A claim \
          that compares scenarios is judged within each seed; for the control, runs of different seeds \
          are compared, because without selection a seed leads to the same structures in every \
-         scenario. The table has {} tests and no correction for multiple testing: at this level, about \
-         one test in twenty is significant by chance.\n\n{}\n",
+         scenario. The table has {} tests and no correction for multiple testing: of the tests without a \
+         real difference, about one in twenty is significant.\n\n{}\n",
         claims.len(),
         table.markdown()
     )
