@@ -279,7 +279,7 @@ fn files_of_another_run_and_damaged_ones_are_errors_that_name_them() {
     let other = lasting_experiment(short(&[]), SEED + 1).unwrap();
     let mut archive = Archive::new(other, &run.path(), None);
     let error = archive.generation(2).unwrap_err();
-    assert!(matches!(error, ArchiveError::Foreign { .. }), "{error}");
+    assert!(matches!(error, ArchiveError::File(_)), "{error}");
     assert!(error.to_string().contains("000002.json: seed"), "{error}");
     let text = fs::read_to_string(&kept).unwrap();
     fs::write(

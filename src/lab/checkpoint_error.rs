@@ -55,6 +55,15 @@ pub enum CheckpointError {
     },
 }
 
+impl From<CheckpointError> for FileProblem {
+    fn from(error: CheckpointError) -> Self {
+        match error {
+            CheckpointError::Read(problem) => problem,
+            error => Self::Wrong(error.to_string()),
+        }
+    }
+}
+
 impl CheckpointError {
     /// A part of a checkpoint that does not fit: its place, what was found, what is allowed.
     pub(super) fn misfit(place: &str, message: String) -> Self {

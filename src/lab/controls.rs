@@ -1,159 +1,132 @@
-//! Commands to a run, and the way of its events to a reader.
+//! Commands to a run.
 
-use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
+use crossbeam_channel::{Receiver, Sender, bounded};
 use serde::{Deserialize, Serialize};
 
 use super::event::Event;
+use super::feed::Feed;
 use crate::evolution::EvolutionState;
 use crate::learning::Gate;
 
-/// Events that wait for the reader before progress is coalesced.
-const CHANNEL_CAPACITY: usize = 256;
-
-/// What a run does at the moment.
+/// What a run is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Activity {
     /// It computes.
     Running,
-    /// It computes until the end of the generation.
+    /// It computes to the end of the generation, then pauses.
     Stepping,
-    /// It waits.
+    /// It is paused.
     Paused,
     /// It was told to stop.
     Stopped,
 }
 
-/// Commands to a run; every reader may hold a copy.
+/// Commands to a run. Clones command the same run.
 ///
-/// Commands act within a few hundred control steps, well under a millisecond of
-/// computation, whatever is going on.
+/// A command takes effect within a few hundred control steps, well under a millisecond.
 #[derive(Clone, Debug)]
 pub struct Controls {
-    desk: Arc<Desk>,
+    shared: Arc<Shared>,
 }
 
 #[derive(Debug)]
-struct Desk {
+struct Shared {
     gate: Gate,
     activity: Mutex<Activity>,
-    sink: Sink,
-    requests: (Sender<()>, Receiver<()>),
-    latest: Mutex<Option<Arc<EvolutionState>>>,
+    checkpoint_requests: (Sender<()>, Receiver<()>),
+    feed: Feed,
 }
 
 impl Controls {
-    /// Controls for a new run, and the receiver of its events.
+    /// Returns the controls of a new run and the receiver of its events.
     pub(super) fn new() -> (Self, Receiver<Event>) {
-        let (sender, receiver) = bounded(CHANNEL_CAPACITY);
-        let desk = Desk {
+        let (feed, receiver) = Feed::new();
+        let shared = Shared {
             gate: Gate::default(),
             activity: Mutex::new(Activity::Running),
-            sink: Sink::new(sender),
-            requests: bounded(1),
-            latest: Mutex::new(None),
+            checkpoint_requests: bounded(1),
+            feed,
         };
-        let desk = Arc::new(desk);
-        (Self { desk }, receiver)
+        let shared = Arc::new(shared);
+        (Self { shared }, receiver)
     }
 
-    /// What the run does.
+    /// Returns what the run is doing.
     #[must_use]
     pub fn activity(&self) -> Activity {
         *self.lock()
     }
 
-    /// Makes the run wait.
+    /// Pauses the run.
     pub fn pause(&self) {
         self.change(Activity::Paused);
     }
 
-    /// Lets the run go on.
+    /// Resumes a paused run.
     pub fn resume(&self) {
         self.change(Activity::Running);
     }
 
-    /// Lets the run go on to the end of the generation, and wait there.
+    /// Lets the run compute to the end of the generation and pauses it there.
     pub fn step(&self) {
         self.change(Activity::Stepping);
     }
 
-    /// Asks for the latest state to be saved now.
+    /// Requests that the latest state be saved now.
     pub fn checkpoint(&self) {
-        // A full channel means that the same is asked for already.
-        let _asked = self.desk.requests.0.try_send(());
+        // A full channel holds the same request already.
+        let _requested = self.shared.checkpoint_requests.0.try_send(());
     }
 
-    /// Stops the run for good. The generation under way is given up; resuming computes
-    /// it again, bit for bit.
+    /// Stops the run for good.
+    ///
+    /// The unfinished generation is dropped; resuming computes it again, bit for bit.
     pub fn stop(&self) {
         self.change(Activity::Stopped);
     }
 
-    /// Control steps computed by this process so far.
+    /// Returns the number of control steps that this process has computed.
     #[must_use]
     pub fn control_steps(&self) -> u64 {
-        self.desk.gate.control_steps()
+        self.shared.gate.control_steps()
     }
 
-    /// The latest state of the evolution; `None` while primitive subtasks are trained.
+    /// Returns the latest state of the evolution; `None` while primitive subtasks are trained.
     #[must_use]
     pub fn latest(&self) -> Option<Arc<EvolutionState>> {
-        self.lock_latest().clone()
+        self.feed().latest()
     }
 
-    pub(super) fn set_latest(&self, state: &Arc<EvolutionState>) {
-        *self.lock_latest() = Some(Arc::clone(state));
-    }
-
-    fn lock_latest(&self) -> MutexGuard<'_, Option<Arc<EvolutionState>>> {
-        let latest = &self.desk.latest;
-        latest.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(super) fn feed(&self) -> &Feed {
+        &self.shared.feed
     }
 
     pub(super) fn gate(&self) -> &Gate {
-        &self.desk.gate
+        &self.shared.gate
     }
 
-    pub(super) fn requests(&self) -> Receiver<()> {
-        self.desk.requests.1.clone()
+    pub(super) fn checkpoint_requests(&self) -> Receiver<()> {
+        self.shared.checkpoint_requests.1.clone()
     }
 
-    /// The latest progress told.
-    pub(super) fn progress(&self) -> Option<Event> {
-        self.desk.sink.lock().progress.clone()
-    }
-
-    /// Tells readers a fact.
-    pub(super) fn tell(&self, event: Event) {
-        self.desk.sink.send(event);
-    }
-
-    /// Hands over what readers have not taken yet, until they have it or are gone.
-    pub(super) fn close(&self) {
-        self.desk.sink.close();
-    }
-
-    /// A generation is over: a run that was stepping waits.
+    /// Pauses a stepping run: its generation is over.
     pub(super) fn generation_over(&self) {
         self.change_from(|from| from == Activity::Stepping, Activity::Paused);
     }
 
     fn lock(&self) -> MutexGuard<'_, Activity> {
-        self.desk
-            .activity
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
+        let activity = &self.shared.activity;
+        activity.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn change(&self, to: Activity) {
         self.change_from(|_| true, to);
     }
 
-    /// Changes what the run does, where `applies` to what it does now.
+    /// Changes the activity if `applies` to the present one and the run was not stopped.
     fn change_from(&self, applies: impl Fn(Activity) -> bool, to: Activity) {
         let mut activity = self.lock();
         let from = *activity;
@@ -162,97 +135,16 @@ impl Controls {
         }
         *activity = to;
         match to {
-            Activity::Running | Activity::Stepping => self.desk.gate.open(),
-            Activity::Paused => self.desk.gate.close(),
-            Activity::Stopped => self.desk.gate.stop(),
+            Activity::Running | Activity::Stepping => self.gate().open(),
+            Activity::Paused => self.gate().close(),
+            Activity::Stopped => self.gate().stop(),
         }
         match (from, to) {
-            (_, Activity::Paused) => self.tell(Event::Paused),
-            (Activity::Paused, Activity::Running | Activity::Stepping) => self.tell(Event::Resumed),
+            (_, Activity::Paused) => self.feed().send(Event::Paused),
+            (Activity::Paused, Activity::Running | Activity::Stepping) => {
+                self.feed().send(Event::Resumed);
+            }
             _ => {}
-        }
-    }
-}
-
-/// The sender's end of the events. Progress is dropped when the channel is full,
-/// milestones wait in a backlog; sending never blocks, so that a slow or dead reader
-/// never slows evolution.
-#[derive(Debug)]
-struct Sink {
-    state: Mutex<SinkState>,
-}
-
-#[derive(Debug)]
-struct SinkState {
-    sender: Option<Sender<Event>>,
-    backlog: VecDeque<Event>,
-    /// The latest progress, whether it was taken or not.
-    progress: Option<Event>,
-}
-
-impl Sink {
-    fn new(sender: Sender<Event>) -> Self {
-        let state = SinkState {
-            sender: Some(sender),
-            backlog: VecDeque::new(),
-            progress: None,
-        };
-        Self {
-            state: Mutex::new(state),
-        }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, SinkState> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn send(&self, event: Event) {
-        let mut state = self.lock();
-        if event.is_progress() {
-            state.progress = Some(event.clone());
-            if !state.backlog.is_empty() {
-                return;
-            }
-        }
-        state.backlog.push_back(event);
-        state.flush();
-    }
-
-    fn close(&self) {
-        let (sender, backlog) = {
-            let mut state = self.lock();
-            (state.sender.take(), std::mem::take(&mut state.backlog))
-        };
-        if let Some(sender) = sender {
-            for event in backlog {
-                if sender.send(event).is_err() {
-                    return;
-                }
-            }
-        }
-    }
-}
-
-impl SinkState {
-    fn flush(&mut self) {
-        let Some(sender) = &self.sender else {
-            self.backlog.clear();
-            return;
-        };
-        while let Some(event) = self.backlog.pop_front() {
-            match sender.try_send(event) {
-                Ok(()) => {}
-                Err(TrySendError::Disconnected(_)) => {
-                    self.backlog.clear();
-                    return;
-                }
-                Err(TrySendError::Full(event)) => {
-                    if !event.is_progress() {
-                        self.backlog.push_front(event);
-                    }
-                    return;
-                }
-            }
         }
     }
 }
@@ -260,35 +152,6 @@ impl SinkState {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_slow_reader_loses_progress_but_no_milestone() {
-        let (controls, events) = Controls::new();
-        for generation in 0..1000 {
-            controls.tell(Event::CheckpointSaved { generation });
-            controls.tell(Event::Progress {
-                generation,
-                lived: 0,
-                population: 1,
-                control_steps: 0,
-            });
-        }
-        std::thread::scope(|scope| {
-            scope.spawn(|| controls.close());
-            let saved = events.iter().filter(|event| !event.is_progress()).count();
-            assert_eq!(saved, 1000);
-        });
-    }
-
-    #[test]
-    fn a_reader_that_went_away_blocks_nothing() {
-        let (controls, events) = Controls::new();
-        drop(events);
-        for generation in 0..1000 {
-            controls.tell(Event::CheckpointSaved { generation });
-        }
-        controls.close();
-    }
 
     #[test]
     fn stopping_is_final() {
@@ -301,7 +164,7 @@ mod tests {
         controls.stop();
         controls.resume();
         assert_eq!(controls.activity(), Activity::Stopped);
-        let told: Vec<_> = events.try_iter().collect();
-        assert_eq!(told, [Event::Paused, Event::Resumed, Event::Paused]);
+        let events: Vec<_> = events.try_iter().collect();
+        assert_eq!(events, [Event::Paused, Event::Resumed, Event::Paused]);
     }
 }

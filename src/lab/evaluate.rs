@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::{Deserialize, Serialize};
 
+use super::statistics::{plain_mean, standard_error};
 use crate::evolution::{Experiment, Workers};
 use crate::hierarchy::{Tree, to_text};
 use crate::learning::{Gate, PrimitiveSet, Stopped};
@@ -95,8 +96,8 @@ pub fn evaluate<W: World>(
         let means = repeats.iter().map(|life| (life.repeat.bank, of(life)));
         means.collect()
     };
-    let steps = means(|life| mean(life.repeat.steps.iter().map(|&steps| f64::from(steps))));
-    let returns = means(|life| mean(life.returns.iter().copied()));
+    let steps = means(|life| plain_mean(life.repeat.steps.iter().map(|&steps| f64::from(steps))));
+    let returns = means(|life| plain_mean(life.returns.iter().copied()));
     let delivered: usize = repeats.iter().map(|life| life.repeat.delivered).sum();
     let (repeats, all_returns) = repeats
         .into_iter()
@@ -105,14 +106,14 @@ pub fn evaluate<W: World>(
     Ok(Scored {
         evaluation: Evaluation {
             tree: to_text(tree, experiment.catalogue()),
-            mean: mean(steps.iter().map(|(_, mean)| *mean)),
+            mean: plain_mean(steps.iter().map(|(_, mean)| *mean)),
             standard_error: standard_error(&steps),
             delivered_share: delivered as f64 / (protocol.repeats * protocol.trials) as f64,
             repeats,
             control_steps,
         },
         returns: all_returns,
-        mean_return: mean(returns.iter().map(|(_, mean)| *mean)),
+        mean_return: plain_mean(returns.iter().map(|(_, mean)| *mean)),
         return_standard_error: standard_error(&returns),
     })
 }
@@ -159,61 +160,4 @@ fn one_repeat<W: World>(
         }
     }
     Ok(life)
-}
-
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let n = values.len() as f64;
-    values.sum::<f64>() / n
-}
-
-/// Standard error of the mean of grouped values, from the variance components of a
-/// one-way random-effects model; a negative component counts as none. With one group
-/// the groups' variance cannot be known and is left out.
-fn standard_error(values: &[(usize, f64)]) -> Option<f64> {
-    let n = values.len() as f64;
-    if values.len() < 2 {
-        return None;
-    }
-    let mean = values.iter().map(|(_, value)| value).sum::<f64>() / n;
-    let total: f64 = values.iter().map(|(_, value)| (value - mean).powi(2)).sum();
-    let groups = values
-        .iter()
-        .map(|(group, _)| group + 1)
-        .max()
-        .unwrap_or(1)
-        .min(values.len());
-    let between: f64 = (0..groups)
-        .map(|group| {
-            let members = values.iter().filter(|(of, _)| *of == group);
-            let (count, sum) = members.fold((0.0, 0.0), |(c, s), (_, value)| (c + 1.0, s + value));
-            if count == 0.0 {
-                0.0
-            } else {
-                count * (sum / count - mean).powi(2)
-            }
-        })
-        .sum();
-    let simple = total / (n - 1.0) / n;
-    let grouped = if groups > 1 {
-        between / (groups as f64 - 1.0) / n
-    } else {
-        0.0
-    };
-    Some(simple.max(grouped).sqrt())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn differences_between_groups_count_in_full() {
-        let alike = [(0, 1.0), (1, 1.0), (0, 3.0), (1, 3.0)];
-        // Variance 4/3 of four values.
-        assert!((standard_error(&alike).unwrap() - (1.0_f64 / 3.0).sqrt()).abs() < 1e-12);
-        let apart = [(0, 1.0), (1, 3.0), (0, 1.0), (1, 3.0)];
-        // Two groups with means 1 and 3: variance 2 of the group means, over two groups.
-        assert!((standard_error(&apart).unwrap() - 1.0).abs() < 1e-12);
-        assert_eq!(standard_error(&[(0, 5.0)]), None);
-    }
 }

@@ -7,7 +7,6 @@ use crate::scenario::Scenario;
 use crate::worlds::scene::Scenery;
 use crate::worlds::{Catalogue, Probe, SubtaskId};
 
-use super::algorithm::Algorithm;
 use super::checkpoint::Checkpoint;
 use super::checkpoint_error::CheckpointError;
 use super::evaluate::{Protocol, Scored};
@@ -15,6 +14,7 @@ use super::inspection::{
     InspectedIndividual, MapView, PolicyMap, Profile, Rollout, Start, StartError,
 };
 use super::learn::{LearnError, LearnProtocol, Learned};
+use super::learner::Algorithm;
 use super::outcome::Outcome;
 use super::run_error::RunError;
 use super::value_grid::ValueGrid;

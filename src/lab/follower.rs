@@ -12,11 +12,10 @@ use super::event::Event;
 use super::folder::RunFolder;
 use super::log::{LogError, read_event};
 use super::manifest::{Manifest, host_name};
-use super::news::{Liveness, News};
+use super::news::{Liveness, News, Recording};
 use super::pulse::{BEAT, Beat, PULSE_FILE};
-use super::recording::Recording;
 use super::run_error::RunError;
-use crate::files::{Stamp, read_bytes};
+use crate::files::{FileError, Stamp, read_bytes};
 
 /// A pulse that stays the same for this long has stopped: more than ten beats, and
 /// the minute for which some shares cache what they know of a file is the exception.
@@ -158,10 +157,7 @@ impl Follower {
         let Some(run) = &self.run else {
             return Ok(());
         };
-        let in_log = |source| RunError::Log {
-            file: path.display().to_string(),
-            source,
-        };
+        let in_log = |error: LogError| FileError::new(&path, error);
         let file = match stamp {
             Some(_) => Some(File::open(&path).map_err(|error| in_log(error.into()))?),
             None => None,

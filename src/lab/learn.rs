@@ -5,9 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use serde::Serialize;
 use thiserror::Error;
 
-use super::algorithm::{Algorithm, GivenPolicy};
-use super::learner::{AnyLearner, Learner};
-use super::mean::{Mean, mean};
+use super::learner::{Algorithm, AnyLearner, GivenPolicy, Learner};
+use super::statistics::{Mean, mean};
 use crate::evolution::{Experiment, Workers};
 use crate::learning::{Gate, Stopped};
 use crate::random::{Purpose, Stream, stream};

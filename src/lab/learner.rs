@@ -1,14 +1,36 @@
 //! Flat learners and hierarchies as one kind of thing: they learn from episodes, and have
 //! a value and a best action for every state.
 
-use super::algorithm::Algorithm;
 use crate::evolution::Experiment;
+use crate::hierarchy::Tree;
 use crate::learning::{
     Agent, Episode, FlatLearner, FlatMethod, Gate, Policy, PrimitiveSet, Stopped,
 };
 use crate::random::Stream;
 use crate::worlds::World;
 use crate::worlds::mdp::{Mdp, MdpState, PolicyTable};
+
+/// A learning algorithm.
+#[derive(Clone, Debug)]
+pub enum Algorithm {
+    /// TD(0) on a table (Thesis Algorithm 2.1).
+    Td0(GivenPolicy),
+    /// Q-learning on a table (Thesis Algorithm 2.2).
+    QLearning,
+    /// Q-learning with normalised Gaussian features (Thesis Algorithm 2.3).
+    QLearningRbf,
+    /// MAXQ-Q on a hierarchy (Thesis Algorithm 2.4).
+    MaxqQ(Tree),
+}
+
+/// The policy whose values TD(0) learns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GivenPolicy {
+    /// The optimal policy; of equally good actions all alike.
+    Optimal,
+    /// All actions alike.
+    Random,
+}
 
 /// Knows a value and a best action for states.
 pub(super) trait Learner<P> {

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::checkpoint::LogPosition;
 use super::event::{EVENT_FORMAT, Event};
+use crate::files::{FileError, FileProblem};
 
 /// Longest line that is read, in bytes: a generation of the largest population that a
 /// scenario may have.
@@ -15,7 +16,7 @@ const MAX_LINE_BYTES: u64 = 1 << 26;
 
 /// Why an event log cannot be used.
 #[derive(Debug, Error)]
-pub enum LogError {
+pub(super) enum LogError {
     /// The operating system refused.
     #[error("{0}")]
     Io(#[from] io::Error),
@@ -39,6 +40,15 @@ pub enum LogError {
         /// What the checkpoint says.
         expected: LogPosition,
     },
+}
+
+impl From<LogError> for FileProblem {
+    fn from(error: LogError) -> Self {
+        match error {
+            LogError::Io(error) => Self::Refused(error),
+            error => Self::Wrong(error.to_string()),
+        }
+    }
 }
 
 /// Appends events to a log and knows its position.
@@ -125,7 +135,11 @@ impl Log {
 ///
 /// # Errors
 /// When the file cannot be read or a complete line is not an event.
-pub fn read_events(path: &Path) -> Result<Vec<Event>, LogError> {
+pub fn read_events(path: &Path) -> Result<Vec<Event>, FileError> {
+    events_in(path).map_err(|error| FileError::new(path, error))
+}
+
+fn events_in(path: &Path) -> Result<Vec<Event>, LogError> {
     let mut reader = BufReader::new(File::open(path)?);
     let mut events = Vec::new();
     let mut line = Vec::new();

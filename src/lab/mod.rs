@@ -1,7 +1,5 @@
-//! One run: the evolution thread, its events and commands, the run folder,
-//! checkpoint and resume; the evaluation of single structures; taking individuals apart.
+#![doc = include_str!("README.md")]
 
-mod algorithm;
 mod checkpoint;
 mod checkpoint_error;
 mod controls;
@@ -9,6 +7,7 @@ mod difference;
 mod evaluate;
 mod event;
 mod experiment;
+mod feed;
 mod folder;
 mod folder_error;
 mod follower;
@@ -17,21 +16,19 @@ mod learn;
 mod learner;
 mod log;
 mod manifest;
-mod mean;
 mod news;
 mod outcome;
 mod population_file;
 mod pulse;
 mod recorder;
-mod recording;
 mod run;
 mod run_error;
+mod statistics;
 mod value_grid;
 mod watch;
 mod work;
 mod world_experiment;
 
-pub use algorithm::{Algorithm, GivenPolicy};
 pub use checkpoint::{Checkpoint, LogPosition};
 pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
@@ -43,14 +40,14 @@ pub use folder::{Keep, RunFolder};
 pub use folder_error::{FolderError, Occupied};
 pub use follower::Follower;
 pub use learn::{Course, LearnCheck, LearnError, LearnProtocol, Learned, learn};
-pub use log::{LogError, read_events};
+pub use learner::{Algorithm, GivenPolicy};
+pub use log::read_events;
 pub use manifest::{Invocation, Manifest, shell_word};
-pub use mean::{Mean, mean};
-pub use news::{Liveness, News};
+pub use news::{Liveness, News, Recording};
 pub use outcome::{BestIndividual, Outcome};
-pub use recording::Recording;
 pub use run::{Run, RunOptions, resume, start};
 pub use run_error::{RunError, SetupError};
+pub use statistics::{Mean, mean};
 pub use value_grid::{ValueGrid, value_grids};
 pub use watch::Watch;
 pub use world_experiment::{any_experiment, experiment, lasting_experiment};

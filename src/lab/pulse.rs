@@ -83,7 +83,7 @@ impl Drop for Pulse {
 }
 
 fn beat(number: u64, controls: &Controls) -> Beat {
-    let progress = controls.progress().map(|mut event| {
+    let progress = controls.feed().progress().map(|mut event| {
         // The count goes on between two events.
         if let Event::Progress { control_steps, .. } = &mut event {
             *control_steps = controls.control_steps();

@@ -20,7 +20,7 @@ use super::event::Event;
 use super::folder::{Keep, RunFolder};
 use super::log::Log;
 use crate::evolution::{EvolutionState, GenerationRecord};
-use crate::files::{link_atomically, write_atomically, write_in_one_step};
+use crate::files::{FileProblem, link_atomically, write_atomically, write_in_one_step};
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 
@@ -44,13 +44,19 @@ pub(super) enum Message {
 
 /// Why a run cannot be recorded.
 #[derive(Debug, Error)]
-pub enum RecordError {
+pub(super) enum RecordError {
     /// The operating system refused.
     #[error("cannot be written: {0}")]
     Io(#[from] io::Error),
     /// The state cannot be a checkpoint.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+}
+
+impl From<RecordError> for FileProblem {
+    fn from(error: RecordError) -> Self {
+        Self::Wrong(error.to_string())
+    }
 }
 
 /// The recorder of one run.
@@ -146,7 +152,9 @@ impl Recorder<'_> {
             true => link_atomically(&self.folder.generation(generation), &checkpoint)?,
             false => write_atomically(&checkpoint, &self.bytes(&pending)?)?,
         }
-        self.controls.tell(Event::CheckpointSaved { generation });
+        self.controls
+            .feed()
+            .send(Event::CheckpointSaved { generation });
         Ok(())
     }
 

@@ -105,10 +105,7 @@ pub fn resume(
     let folder = RunFolder::open(path)?;
     let mut manifest = RunFolder::read_manifest(path)?;
     let file = folder.checkpoint();
-    let checkpoint = Checkpoint::read(&file).map_err(|source| RunError::Checkpoint {
-        file: file.display().to_string(),
-        source,
-    })?;
+    let checkpoint = Checkpoint::read(&file).map_err(|error| FileError::new(&file, error))?;
     if let Some(checkpoint) = &checkpoint {
         checkpoint
             .check_origin(&manifest.scenario, manifest.seed)
@@ -206,26 +203,21 @@ fn begin(preparation: Preparation) -> Result<Run, RunError> {
     let (controls, events) = Controls::new();
     let (folder, manifest) = place.folder()?;
     let path = folder.path().to_owned();
-    let in_file = |name: &str| path.join(name).display().to_string();
     let state = checkpoint
         .as_ref()
         .map(|checkpoint| experiment.population(checkpoint));
-    let state = state.transpose().map_err(|source| RunError::Checkpoint {
-        file: in_file("checkpoint.json"),
-        source,
-    })?;
-    let in_log = |source| RunError::Log {
-        file: in_file("events.jsonl"),
-        source,
-    };
+    let state = state
+        .transpose()
+        .map_err(|error| FileError::new(folder.checkpoint(), error))?;
     let file = folder.events();
     let (log, past) = match &checkpoint {
         Some(checkpoint) => {
-            let log = Log::reopen(&file, checkpoint.events).map_err(in_log)?;
-            (log, read_events(&file).map_err(in_log)?)
+            let log = Log::reopen(&file, checkpoint.events);
+            let log = log.map_err(|error| FileError::new(&file, error))?;
+            (log, read_events(&file)?)
         }
         None => (
-            Log::create(&file).map_err(|error| in_log(error.into()))?,
+            Log::create(&file).map_err(|error| FileError::new(&file, error))?,
             Vec::new(),
         ),
     };

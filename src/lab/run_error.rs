@@ -2,11 +2,9 @@
 
 use thiserror::Error;
 
-use super::checkpoint_error::CheckpointError;
 use super::folder_error::FolderError;
-use super::log::LogError;
-use super::recorder::RecordError;
 use crate::evolution::ExperimentError;
+use crate::files::FileError;
 use crate::rules::Problem;
 
 /// Why a scenario cannot be made ready.
@@ -29,30 +27,9 @@ pub enum RunError {
     /// The run folder cannot be used.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// The checkpoint cannot be used.
-    #[error("{file}: {source}")]
-    Checkpoint {
-        /// The file.
-        file: String,
-        /// Why.
-        source: CheckpointError,
-    },
-    /// The event log cannot be used.
-    #[error("{file}: {source}")]
-    Log {
-        /// The file.
-        file: String,
-        /// Why.
-        source: LogError,
-    },
-    /// The run cannot be recorded.
-    #[error("{folder}: {source}")]
-    Record {
-        /// The run folder.
-        folder: String,
-        /// Why.
-        source: RecordError,
-    },
+    /// A file of the run cannot be read or written, or is not what it should be.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The limit of a resumed run is not above what it has lived.
     #[error("--generations: found {found}; allowed: {lived} (the generations lived) to 100000")]
     Generations {

@@ -12,10 +12,10 @@ use super::folder::{Keep, RunFolder};
 use super::log::Log;
 use super::outcome::{BestIndividual, Outcome};
 use super::pulse::Pulse;
-use super::recorder::{Message, QUEUE_CAPACITY, Recorder};
+use super::recorder::{Message, QUEUE_CAPACITY, RecordError, Recorder};
 use super::run_error::RunError;
 use crate::evolution::{Evolution, EvolutionState, Experiment, Workers};
-use crate::files::{read_text, write_atomically};
+use crate::files::{FileError, read_text, write_atomically};
 use crate::learning::Stopped;
 use crate::worlds::World;
 
@@ -59,7 +59,7 @@ struct Closing<'c>(&'c Controls);
 
 impl Drop for Closing<'_> {
     fn drop(&mut self) {
-        self.0.close();
+        self.0.feed().close();
     }
 }
 
@@ -74,7 +74,7 @@ impl Work {
         let _closing = Closing(controls);
         let _pulse = Pulse::start(self.folder.path(), controls);
         let (sender, messages) = bounded(QUEUE_CAPACITY);
-        let requests = controls.requests();
+        let requests = controls.checkpoint_requests();
         let recorder = Recorder {
             scenario: &experiment.scenario,
             catalogue: experiment.catalogue(),
@@ -101,10 +101,7 @@ impl Work {
         let folder = self.folder.path().display().to_string();
         recorded
             .map_err(|_| RunError::Panicked)?
-            .map_err(|source| RunError::Record {
-                folder: folder.clone(),
-                source,
-            })?;
+            .map_err(|error| FileError::new(&folder, error))?;
         let outcome = Outcome {
             scenario: experiment.scenario.name.clone(),
             seed,
@@ -121,10 +118,7 @@ impl Work {
             let written = serde_json::to_vec_pretty(&outcome)
                 .map_err(std::io::Error::from)
                 .and_then(|bytes| write_atomically(&self.folder.summary(), &bytes));
-            written.map_err(|error| RunError::Record {
-                folder,
-                source: error.into(),
-            })?;
+            written.map_err(|error| FileError::new(&folder, RecordError::Io(error)))?;
         }
         Ok(outcome)
     }
@@ -145,7 +139,7 @@ impl<W: World> WorldRun<'_, W> {
             if let Event::Generation(record) = &event {
                 progress.best = BestIndividual::of(record);
             }
-            self.controls.tell(event);
+            self.controls.feed().send(event);
         }
         // An error means that the run was stopped; the progress so far says how far it came.
         let _stopped = self.evolve_on(&mut progress, &recorder);
@@ -162,7 +156,7 @@ impl<W: World> WorldRun<'_, W> {
         let controls = self.controls;
         let population = scenario.evolution.population_size;
         let show = |generation, lived| {
-            controls.tell(Event::Progress {
+            controls.feed().send(Event::Progress {
                 generation,
                 lived,
                 population,
@@ -207,8 +201,8 @@ impl<W: World> WorldRun<'_, W> {
             let message = Message::Generation(record.clone(), state);
             recorder.send(message).map_err(|_| Stopped)?;
             // Before the event: who hears of a generation can look at its individuals.
-            controls.set_latest(evolution.state());
-            controls.tell(Event::Generation(record));
+            controls.feed().set_latest(evolution.state());
+            controls.feed().send(Event::Generation(record));
             controls.generation_over();
         }
         let ending = match progress.converged {
@@ -238,7 +232,7 @@ impl<W: World> WorldRun<'_, W> {
     fn fact(&self, event: Event, recorder: &Sender<Message>) -> Result<(), Stopped> {
         let message = Message::Event(Box::new(event.clone()));
         recorder.send(message).map_err(|_| Stopped)?;
-        self.controls.tell(event);
+        self.controls.feed().send(event);
         Ok(())
     }
 
@@ -247,7 +241,7 @@ impl<W: World> WorldRun<'_, W> {
         evolution: &Evolution<'_, W>,
         recorder: &Sender<Message>,
     ) -> Result<(), Stopped> {
-        self.controls.set_latest(evolution.state());
+        self.controls.feed().set_latest(evolution.state());
         let state = Message::State(Arc::clone(evolution.state()));
         recorder.send(state).map_err(|_| Stopped)
     }

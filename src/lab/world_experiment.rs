@@ -2,7 +2,6 @@
 
 use std::sync::OnceLock;
 
-use super::algorithm::Algorithm;
 use super::evaluate::{Protocol, Scored, evaluate};
 use super::experiment::AnyExperiment;
 use super::inspection::{
@@ -10,6 +9,7 @@ use super::inspection::{
     profiles,
 };
 use super::learn::{LearnError, LearnProtocol, Learned, learn};
+use super::learner::Algorithm;
 use super::outcome::Outcome;
 use super::run_error::{RunError, SetupError};
 use super::value_grid::{ValueGrid, value_grids};

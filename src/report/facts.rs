@@ -8,7 +8,7 @@ use super::study::{RunId, Study};
 use super::winner::Winner;
 use crate::evolution::GenerationRecord;
 use crate::files::FileError;
-use crate::lab::{Event, RunError, experiment, read_events};
+use crate::lab::{Event, experiment, read_events};
 
 /// The facts of a finished run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -72,10 +72,7 @@ impl Facts {
         let scenario = study.arm(run).apply(study.scenario(run))?;
         let manifest = check_origin(study, run, &scenario)?;
         let file = folder.join("events.jsonl");
-        let events = read_events(&file).map_err(|source| RunError::Log {
-            file: file.display().to_string(),
-            source,
-        })?;
+        let events = read_events(&file)?;
         let records: Vec<_> = events
             .into_iter()
             .filter_map(|event| match event {

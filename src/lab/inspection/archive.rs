@@ -8,8 +8,8 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::evolution::EvolutionState;
+use crate::files::FileError;
 use crate::lab::checkpoint::Checkpoint;
-use crate::lab::checkpoint_error::CheckpointError;
 use crate::lab::controls::Controls;
 use crate::lab::experiment::AnyExperiment;
 
@@ -36,22 +36,9 @@ pub enum ArchiveError {
         /// The run folder.
         folder: String,
     },
-    /// A file is not the checkpoint of this run.
-    #[error("{file}: {source}")]
-    Checkpoint {
-        /// The file.
-        file: String,
-        /// Why.
-        source: CheckpointError,
-    },
-    /// A file is the checkpoint of another run.
-    #[error("{file}: {message}")]
-    Foreign {
-        /// The file.
-        file: String,
-        /// What differs.
-        message: String,
-    },
+    /// A file is not a checkpoint of this run.
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// The populations of one run, read when they are asked for.
@@ -135,24 +122,16 @@ impl Archive {
 
     /// The population in a file, if there is a file.
     fn read(&self, path: &Path) -> Result<Option<EvolutionState>, ArchiveError> {
-        let file = path.display().to_string();
-        let wrong = |source| ArchiveError::Checkpoint {
-            file: file.clone(),
-            source,
-        };
+        let wrong = |error| FileError::new(path, error);
         let Some(checkpoint) = Checkpoint::read(path).map_err(wrong)? else {
             return Ok(None);
         };
         checkpoint
             .check_origin(self.experiment.scenario(), self.experiment.seed())
-            .map_err(|message| ArchiveError::Foreign {
-                file: file.clone(),
-                message,
-            })?;
-        self.experiment
-            .population(&checkpoint)
-            .map(Some)
-            .map_err(wrong)
+            .map_err(|message| FileError::new(path, message))?;
+        Ok(Some(
+            self.experiment.population(&checkpoint).map_err(wrong)?,
+        ))
     }
 }
 

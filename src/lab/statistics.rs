@@ -25,6 +25,47 @@ pub fn mean(numbers: &[f64]) -> Option<Mean> {
     Some(Mean { mean, half_width })
 }
 
+pub(super) fn plain_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let n = values.len() as f64;
+    values.sum::<f64>() / n
+}
+
+/// Standard error of the mean of grouped values, from the variance components of a
+/// one-way random-effects model; a negative component counts as none. With one group
+/// the groups' variance cannot be known and is left out.
+pub(super) fn standard_error(values: &[(usize, f64)]) -> Option<f64> {
+    let n = values.len() as f64;
+    if values.len() < 2 {
+        return None;
+    }
+    let mean = values.iter().map(|(_, value)| value).sum::<f64>() / n;
+    let total: f64 = values.iter().map(|(_, value)| (value - mean).powi(2)).sum();
+    let groups = values
+        .iter()
+        .map(|(group, _)| group + 1)
+        .max()
+        .unwrap_or(1)
+        .min(values.len());
+    let between: f64 = (0..groups)
+        .map(|group| {
+            let members = values.iter().filter(|(of, _)| *of == group);
+            let (count, sum) = members.fold((0.0, 0.0), |(c, s), (_, value)| (c + 1.0, s + value));
+            if count == 0.0 {
+                0.0
+            } else {
+                count * (sum / count - mean).powi(2)
+            }
+        })
+        .sum();
+    let simple = total / (n - 1.0) / n;
+    let grouped = if groups > 1 {
+        between / (groups as f64 - 1.0) / n
+    } else {
+        0.0
+    };
+    Some(simple.max(grouped).sqrt())
+}
+
 /// The 97.5 % quantile of Student's t distribution, by the expansion of Cornish and Fisher
 /// in 1 over the degrees of freedom (Abramowitz and Stegun 26.7.5), which is right to 0.01
 /// from four degrees on; below from their Table 26.10.
@@ -63,5 +104,16 @@ mod tests {
         assert!((five.half_width.unwrap() - 2.776 * 0.5_f64.sqrt()).abs() < 0.02);
         assert_eq!(mean(&[7.0]).unwrap().half_width, None);
         assert_eq!(mean(&[]), None);
+    }
+
+    #[test]
+    fn differences_between_groups_count_in_full() {
+        let alike = [(0, 1.0), (1, 1.0), (0, 3.0), (1, 3.0)];
+        // Variance 4/3 of four values.
+        assert!((standard_error(&alike).unwrap() - (1.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+        let apart = [(0, 1.0), (1, 3.0), (0, 1.0), (1, 3.0)];
+        // Two groups with means 1 and 3: variance 2 of the group means, over two groups.
+        assert!((standard_error(&apart).unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(standard_error(&[(0, 5.0)]), None);
     }
 }
