@@ -92,7 +92,7 @@ fn the_steps_of_an_earlier_trial_are_below_its_number() {
     let mut screen = screen();
     screen.press("t . . . N . .");
     let text = screen.text();
-    let steps = text.split("the steps before").nth(1).unwrap();
+    let steps = text.split("earlier steps").nth(1).unwrap();
     let lines: Vec<_> = steps.lines().skip(1).collect();
     let has = |line: usize, words: &str| {
         assert!(
@@ -169,7 +169,7 @@ fn every_part_of_a_step_is_on_the_screen() {
     }
     for update_trace in &trace.explanation.update_traces {
         let told = format!(
-            "{} learns about {}",
+            "{} updates {}",
             name(update_trace.node),
             name(update_trace.child)
         );

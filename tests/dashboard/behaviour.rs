@@ -76,7 +76,7 @@ fn a_rollout_that_is_halted_before_its_first_step_says_how_it_goes_on() {
     }
     let text = screen.text();
     assert!(
-        text.contains("no time step of this rollout yet: . takes one"),
+        text.contains("this rollout has no time step yet: . takes one"),
         "{text}"
     );
     screen.press(".");

@@ -105,7 +105,7 @@ fn the_stepper_says_everything_in_little_room() {
     screen.press("t . .");
     let text = screen.text();
     for (level, rule) in [
-        ("Root  V", "on with Put"),
+        ("Root  V", "continues Put"),
         ("Put  V", "NavToDes"),
         ("NavigateToDestination  V", "greedy"),
     ] {
@@ -136,11 +136,11 @@ fn ranks_by_chance_are_called_so() {
     let run = Recorded::new(&common::short(&["evolution.selection=random"]));
     let mut screen = run.screen("dark", Unicode, MIDDLE);
     for (key, words) in [
-        ("1", "drawn by chance"),
-        ("1", "ranked by chance"),
+        ("1", "drawn at random"),
+        ("1", "ranked at random"),
         ("1", "middle "),
-        ("4", "the 4 first by chance"),
-        ("6", "ranked by chance"),
+        ("4", "random 4 of 8"),
+        ("6", "ranked at random"),
     ] {
         screen.press(key);
         assert!(screen.text().contains(words), "{}", screen.text());
@@ -149,7 +149,7 @@ fn ranks_by_chance_are_called_so() {
         !foraging()
             .screen("dark", Unicode, MIDDLE)
             .text()
-            .contains("chance")
+            .contains("at random")
     );
 }
 

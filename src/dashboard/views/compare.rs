@@ -1,18 +1,19 @@
-//! Two individuals side by side.
+//! The comparison view: two individuals side by side.
 
-use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
+use super::policy::SMALL;
+use super::shared::{csv_line, draw_note, keys, line, mean_steps};
 use super::view::View;
 use crate::dashboard::context::Effect;
 use crate::dashboard::context::{Chosen, ViewContext};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, last_start, percent};
-use crate::dashboard::look::{Paint, fitted, put, width, wrapped};
+use crate::dashboard::look::{Paint, put, width, wrapped};
 use crate::dashboard::view_id::ViewId;
 use crate::evolution::RankedRecord;
 use crate::hierarchy::{Tree, draw, structural_difference, to_dot};
@@ -20,8 +21,10 @@ use crate::lab::inspection::InspectedIndividual;
 use crate::learning::SelectionProbabilities;
 use crate::worlds::SubtaskId;
 
-/// The selected individual beside the marked one, with what the one has and the other has
-/// not.
+/// Selection probabilities that differ by at least this much are marked.
+const MARKED: f64 = 0.1;
+
+/// The selected individual beside the marked one, with their differences marked.
 ///
 /// ```text
 ///  ╭ Comparison  structural difference -3 ────────────────────────────────╮
@@ -30,13 +33,15 @@ use crate::worlds::SubtaskId;
 ///  │   Root                               Root                             │
 ///  │   ├─ FindBattery                     ├─ FindBattery                   │
 ///  │ + │  └─ Avoid                      + │  └─ Wander                     │
+///  │ selects, by state type             selects, by state type            │
+///  │ 1 +Avoid 61 %  Wander 39 %         1 +Wander 100 %                   │
 ///  ╰───────────────────────────────────────────────────────────────────────╯
 /// ```
 #[derive(Default)]
 pub(super) struct Compare {
-    /// Selection probabilities of the two.
+    /// Selection probabilities of the two, once computed.
     selection: Option<Selections>,
-    /// Lines above the screen.
+    /// Lines scrolled out at the top.
     scroll: usize,
 }
 
@@ -46,69 +51,58 @@ struct Selections {
     of: [SelectionProbabilities; 2],
 }
 
-/// One of the two.
-struct Side<'d> {
-    record: &'d RankedRecord,
+/// One of the two individuals.
+struct Side<'c> {
+    record: &'c RankedRecord,
     tree: Tree,
-    /// For each node whether the other has not its like.
-    unlike: Vec<bool>,
-    selection: Option<&'d SelectionProbabilities>,
+    /// For each node, whether the other tree lacks its counterpart.
+    lacking: Vec<bool>,
+    selection: Option<&'c SelectionProbabilities>,
 }
 
 impl Compare {
-    fn sides<'d>(&'d self, context: &'d ViewContext) -> Option<[Side<'d>; 2]> {
+    fn sides<'c>(&'c self, context: &'c ViewContext) -> Option<[Side<'c>; 2]> {
         let records = context.rivals()?;
         let [one, other] = [context.tree(records[0])?, context.tree(records[1])?];
-        let unlike = [unlike(&one, &other), unlike(&other, &one)];
-        let known = self
-            .selection
-            .as_ref()
-            .filter(|known| known.ids == records.map(|r| r.id));
-        let [first, second] = unlike;
-        Some([
-            Side {
-                record: records[0],
-                tree: one,
-                unlike: first,
-                selection: known.map(|known| &known.of[0]),
-            },
-            Side {
-                record: records[1],
-                tree: other,
-                unlike: second,
-                selection: known.map(|known| &known.of[1]),
-            },
-        ])
+        let lacking = [lacking(&one, &other), lacking(&other, &one)];
+        let ids = records.map(|record| record.id);
+        let known = self.selection.as_ref().filter(|known| known.ids == ids);
+        let [first, second] = lacking;
+        let side = |index: usize, tree, lacking| Side {
+            record: records[index],
+            tree,
+            lacking,
+            selection: known.map(|known| &known.of[index]),
+        };
+        Some([side(0, one, first), side(1, other, second)])
     }
 }
 
-/// For each node of a tree whether the other tree has not its like: a composite subtask
-/// that is nowhere in it, a child more often than under the same composite there. These
-/// are the terms of the structural difference (Thesis 4.5.2).
-fn unlike(tree: &Tree, other: &Tree) -> Vec<bool> {
+/// Returns for each node of a tree whether the other tree lacks its counterpart.
+///
+/// It lacks a composite subtask that occurs nowhere in it, and a primitive child that occurs
+/// less often under the same composite. These are the terms of the structural difference
+/// (Thesis 4.5.2).
+fn lacking(tree: &Tree, other: &Tree) -> Vec<bool> {
     let parent = |tree: &Tree, node: usize| tree.nodes()[node].parent.map(|p| tree.subtask(p));
-    let mut left: BTreeMap<(Option<SubtaskId>, SubtaskId), usize> = BTreeMap::new();
-    let mut anywhere: BTreeMap<SubtaskId, usize> = BTreeMap::new();
+    let mut children: BTreeMap<(Option<SubtaskId>, SubtaskId), usize> = BTreeMap::new();
+    let mut subtasks: BTreeSet<SubtaskId> = BTreeSet::new();
     for node in 0..other.nodes().len() {
         let subtask = other.subtask(node);
-        *left.entry((parent(other, node), subtask)).or_default() += 1;
-        *anywhere.entry(subtask).or_default() += 1;
+        *children.entry((parent(other, node), subtask)).or_default() += 1;
+        subtasks.insert(subtask);
     }
-    (0..tree.nodes().len())
-        .map(|node| {
-            let subtask = tree.subtask(node);
-            if tree.children(node).next().is_some() {
-                return !anywhere.contains_key(&subtask);
-            }
-            match left.get_mut(&(parent(tree, node), subtask)) {
-                Some(count) if *count > 0 => {
-                    *count -= 1;
-                    false
-                }
-                _ => true,
-            }
-        })
-        .collect()
+    let mut is_lacking = |node: usize| {
+        let subtask = tree.subtask(node);
+        if tree.children(node).next().is_some() {
+            return !subtasks.contains(&subtask);
+        }
+        let left = children.entry((parent(tree, node), subtask)).or_default();
+        let is_lacking = *left == 0;
+        *left = left.saturating_sub(1);
+        is_lacking
+    };
+    (0..tree.nodes().len()).map(&mut is_lacking).collect()
 }
 
 impl Compare {
@@ -126,7 +120,7 @@ impl Compare {
         Some(Vec::new())
     }
 
-    /// Lines of the longer side.
+    /// Returns the number of lines of the longer side.
     fn longest(&self, context: &ViewContext) -> usize {
         let columns = usize::from((context.size.0 / 2).saturating_sub(3));
         self.sides(context).map_or(0, |[one, other]| {
@@ -137,7 +131,7 @@ impl Compare {
     }
 }
 
-/// Rows of a side: without header, hint bar, border and note.
+/// Returns the rows for a side, without header, hint bar, border and note.
 fn rows(context: &ViewContext) -> u16 {
     context.size.1.saturating_sub(5)
 }
@@ -152,36 +146,34 @@ impl Side<'_> {
     ) -> Vec<Line<'static>> {
         let look = &context.look;
         let record = self.record;
-        let steps = record.fitness_steps as f64 / record.trials.len().max(1) as f64;
         let generation = context.inspected().map_or(0, |(generation, _)| generation);
-        let head = format!("individual {}, generation {generation}", record.id);
         let delivered = record.trials.iter().filter(|trial| trial.delivered).count();
+        let (rank, trials, steps) = (record.rank, record.trials.len(), mean_steps(record));
+        let (composites, primitives) = (record.composites, record.primitives.len());
+        let head = format!("individual {}, generation {generation}", record.id);
         let facts = [
-            format!("{role}: rank {}, {steps:.1} steps", record.rank),
-            format!("{delivered} of {} trials done", record.trials.len()),
-            format!(
-                "{} composite, {} primitive subtasks",
-                record.composites,
-                record.primitives.len()
-            ),
+            format!("{role}: rank {rank}, {steps:.1} steps"),
+            format!("{delivered} of {trials} scored trials done"),
+            format!("{composites} composite, {primitives} primitive subtasks"),
         ];
-        let mut lines = vec![Pen::new(look).text(head, Paint::Title).line()];
-        lines.extend(facts.map(|fact| Pen::new(look).text(fact, Paint::Text).line()));
+        let mut lines = vec![line(look, head, Paint::Title)];
+        lines.extend(facts.map(|fact| line(look, fact, Paint::Text)));
         lines.push(Line::default());
         let drawn = draw(&self.tree, context.catalogue(), look.signs.tree);
-        for (line, unlike) in drawn.into_iter().zip(&self.unlike) {
-            let (sign, paint) = match unlike {
-                true => ("+ ", Paint::Notice),
-                false => ("  ", Paint::Text),
+        for (text, lacking) in drawn.into_iter().zip(&self.lacking) {
+            let (sign, paint) = if *lacking {
+                ("+ ", Paint::Notice)
+            } else {
+                ("  ", Paint::Text)
             };
-            lines.push(Pen::new(look).text(sign, paint).text(line, paint).line());
+            lines.push(Pen::new(look).text(sign, paint).text(text, paint).line());
         }
         lines.push(Line::default());
         lines.extend(self.selection_lines(context, other, columns));
         lines
     }
 
-    /// Selection probabilities, marked where they are far from the other's.
+    /// Lists the selection probabilities, marked where they differ from the other's.
     fn selection_lines(
         &self,
         context: &ViewContext,
@@ -190,31 +182,29 @@ impl Side<'_> {
     ) -> Vec<Line<'static>> {
         let look = &context.look;
         let Some(selection) = self.selection else {
-            let why = context
-                .player
-                .load_error()
-                .unwrap_or("what they select is being worked out");
+            let error = context.player.load_error();
+            let why = error.unwrap_or("computing selection probabilities");
             let lines = wrapped(why, columns, "").into_iter();
-            return lines
-                .map(|line| Pen::new(look).text(line, Paint::Dim).line())
-                .collect();
+            return lines.map(|text| line(look, text, Paint::Dim)).collect();
         };
-        let mut lines = vec![Pen::new(look).text("selects", Paint::Dim).line()];
+        let mut lines = vec![line(look, "selects, by state type", Paint::Dim)];
         for (index, of) in selection.iter().enumerate() {
             let Some(of) = of else { continue };
             let theirs = other.selection.and_then(|all| all.get(index)?.as_ref());
             let mut pen = Pen::new(look).text(format!("{} ", index + 1), Paint::Title);
             for (place, primitive) in context.catalogue().primitives().enumerate() {
-                let share = of[place];
-                let far = theirs.is_some_and(|theirs| (theirs[place] - share).abs() >= 0.1);
-                if share < 0.005 && !far {
-                    continue;
-                }
-                let (sign, paint) = match far {
-                    true => ("+", Paint::Notice),
-                    false => (" ", Paint::Text),
-                };
                 let name = primitive.name(context.catalogue());
+                let share = of[place];
+                let sign = match theirs {
+                    Some(theirs) if (theirs[place] - share).abs() >= MARKED => "+",
+                    _ if share >= SMALL => " ",
+                    _ => continue,
+                };
+                let paint = if sign == "+" {
+                    Paint::Notice
+                } else {
+                    Paint::Text
+                };
                 let text = format!("{sign}{name} {}", percent(share));
                 if pen.column() + width(&text) > columns {
                     lines.push(pen.line());
@@ -251,7 +241,7 @@ impl View for Compare {
         };
         let difference = structural_difference(&one.tree, &other.tree, context.catalogue());
         match difference {
-            0 => String::from("the same structure"),
+            0 => String::from("same structure"),
             _ => format!("structural difference {difference}"),
         }
     }
@@ -259,17 +249,12 @@ impl View for Compare {
     fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let look = &context.look;
         let Some([one, other]) = self.sides(context) else {
-            let text = fitted(
-                "no two individuals have lived yet",
-                area.width.into(),
-                look.signs,
-            );
-            put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
-            return;
+            return draw_note(context, "no two individuals evaluated yet", area, buffer);
         };
-        let role = match context.marked == Some(other.record.id) {
-            true => "marked",
-            false => "next best",
+        let role = if context.marked == Some(other.record.id) {
+            "marked"
+        } else {
+            "best other"
         };
         let half = area.width / 2;
         let columns = usize::from(half.saturating_sub(2));
@@ -286,12 +271,10 @@ impl View for Compare {
             };
             draw_lines(look, &lines, self.scroll, side, buffer);
         }
-        let key = context
-            .keys
-            .hint(Action::Mark, look.signs)
-            .map_or(String::new(), |(key, _)| key);
-        let note =
-            format!("+ has what the other has not   {key} marks the selected one for comparison");
+        let key = keys(context, Action::Mark);
+        let note = format!(
+            "+ differs from the other   {key} marks the selected individual for comparison"
+        );
         let row = area.height.saturating_sub(1);
         if area.height > 3 && width(&note) < usize::from(area.width) {
             put(buffer, area, (1, row), &note, look.style(Paint::Dim));
@@ -316,7 +299,7 @@ impl View for Compare {
         }
     }
 
-    /// The selected individual changes by rank; pages are those of both sides.
+    /// Up and down select by rank; paging scrolls both sides.
     fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
         let by = match action {
             Action::Up => -1,
@@ -341,9 +324,9 @@ impl View for Compare {
         };
         let ids = [one.id, other.id];
         let known = self.selection.as_ref();
-        let fresh =
-            known.is_some_and(|known| known.generation == state.generation && known.ids == ids);
-        if fresh {
+        let is_current =
+            |known: &Selections| known.generation == state.generation && known.ids == ids;
+        if known.is_some_and(is_current) {
             return;
         }
         let individuals = ids.map(|id| InspectedIndividual::with_id(state, id));
@@ -362,17 +345,14 @@ impl View for Compare {
         let sides = self.sides(context)?;
         let mut csv = String::from("individual,rank,node,parent,subtask,only_here\n");
         for side in &sides {
-            for (node, unlike) in side.unlike.iter().enumerate() {
+            for (node, lacking) in side.lacking.iter().enumerate() {
                 let parent = side.tree.nodes()[node].parent;
-                // Writing to a string cannot fail.
-                let _ = writeln!(
-                    csv,
-                    "{},{},{node},{},{},{}",
-                    side.record.id,
-                    side.record.rank,
-                    parent.map_or(String::new(), |parent| parent.to_string()),
-                    context.catalogue().subtask(side.tree.subtask(node)).name,
-                    u8::from(*unlike)
+                let parent = parent.map_or(String::new(), |parent| parent.to_string());
+                let name = side.tree.subtask(node).name(context.catalogue());
+                let (id, rank) = (&side.record.id, &side.record.rank);
+                csv_line(
+                    &mut csv,
+                    &[id, rank, &node, &parent, &name, &u8::from(*lacking)],
                 );
             }
         }
@@ -388,9 +368,8 @@ impl View for Compare {
 
     fn help_text(&self) -> &'static str {
         "The selected individual beside another: the marked one, or the best of the others.\n\
-         What one has and the other has not is marked +: a composite subtask, or a primitive\n\
-         child more often under the same composite. These are the terms of the structural\n\
-         difference (Thesis 4.5.2). Selection probabilities are marked where they differ by\n\
-         more than a tenth."
+         + marks what the other lacks: a composite subtask, or a primitive child that occurs\n\
+         more often under the same composite. These are the terms of the structural difference\n\
+         (Thesis 4.5.2). + also marks selection probabilities that differ by 0.1 or more."
     }
 }

@@ -1,28 +1,28 @@
-//! Fitness and structural difference over generations.
-
-use std::fmt::Write;
+//! The fitness view: fitness and structural difference over generations.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::shared::{THROUGH_TIME, by_chance, nothing_yet, over_generations};
+use super::shared::{
+    THROUGH_TIME, csv_line, draw_no_generation, over_generations, random_ranks, right_of,
+};
 use super::view::View;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Chart, Curve, Paint, put, width};
 use crate::evolution::GenerationRecord;
 
-/// Fitness over generations (Thesis Figure 4.8), structural difference below (4.7).
+/// Fitness over generations (Thesis Figure 4.8), structural difference below (Figure 4.7).
 ///
 /// ```text
-///  ╭ Fitness  time steps a trial, of the 8 best ╮
-///  │ 1006 ⠒⢄   │                                │
-///  │  390   ⠑⠒⠤┼⠤⠤                              │
-///  │ best 406  median 518  worst 616            │   at the generation shown
-///  │    0 ⢀⠤⠒⠒⠒┼⠉⠉                              │
-///  │  -18 ⠊    │                                │
-///  │ structural difference to the best -1.2     │
-///  ╰────────────────────────────────────────────╯
+///  ╭ Fitness  time steps per trial · best 8 of 16 ╮
+///  │ 1006 ⠒⢄   │                                  │
+///  │  390   ⠑⠒⠤┼⠤⠤                                │
+///  │ best 406  median 518  worst 616              │   in the generation shown
+///  │    0 ⢀⠤⠒⠒⠒┼⠉⠉                                │
+///  │  -18 ⠊    │                                  │
+///  │ structural difference to best -1.2           │
+///  ╰──────────────────────────────────────────────╯
 /// ```
 pub(super) struct Fitness;
 
@@ -32,7 +32,7 @@ const CURVES: [(&str, Paint); 3] = [
     ("worst", Paint::Worst),
 ];
 
-/// Rows from which on there are two charts.
+/// From this many rows on there are two charts.
 const TWO_CHARTS: u16 = 11;
 
 impl View for Fitness {
@@ -45,19 +45,19 @@ impl View for Fitness {
     }
 
     fn caption(&self, context: &ViewContext) -> String {
-        match context.shown().map(|record| better_half(record)) {
-            None | Some(0) => String::from("time steps a trial"),
-            Some(half) => {
-                let separator = context.look.signs.separator;
-                let ranked = by_chance(context).map_or("best", |_| "first by chance");
-                format!("time steps a trial {separator} the {half} {ranked}")
-            }
+        let individuals = context.shown().map_or(0, |record| record.individuals.len());
+        if individuals < 2 {
+            return String::from("time steps per trial");
         }
+        let separator = context.look.signs.separator;
+        let which = random_ranks(context).map_or("best", |_| "random");
+        let half = individuals / 2;
+        format!("time steps per trial {separator} {which} {half} of {individuals}")
     }
 
     fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let (Some(mut chart), Some(shown)) = (fitness_chart(context), context.shown()) else {
-            return nothing_yet(context, area, buffer);
+            return draw_no_generation(context, area, buffer);
         };
         let look = &context.look;
         let two = area.height >= TWO_CHARTS;
@@ -69,10 +69,10 @@ impl View for Fitness {
             Constraint::Length(u16::from(two)),
         ];
         let [above, legend, below, difference] = Layout::vertical(rows).areas(area);
-        let [above, below] = [above, below].map(indented);
+        let [above, below] = [above, below].map(|area| right_of(area, 1));
         let mut difference_chart = difference_chart(context);
         if two {
-            // One axis for both.
+            // The charts share one axis.
             chart.margin = difference_chart.left();
             difference_chart.margin = chart.left();
         }
@@ -80,14 +80,9 @@ impl View for Fitness {
         draw_legend(context, shown, legend, buffer);
         if two {
             difference_chart.draw(look, below, buffer);
-            let text = format!("difference to the best {:.1}", shown.mean_difference);
-            put(
-                buffer,
-                difference,
-                (1, 0),
-                &text,
-                look.style(Paint::Series1),
-            );
+            let text = format!("structural difference to best {:.1}", shown.mean_difference);
+            let style = look.style(Paint::Series1);
+            put(buffer, difference, (1, 0), &text, style);
         }
     }
 
@@ -102,49 +97,35 @@ impl View for Fitness {
             let Some([best, median, worst]) = better_half_steps(record) else {
                 continue;
             };
-            let (number, converged) = (record.generation, record.converged);
-            let difference = record.mean_difference;
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                csv,
-                "{number},{best},{median},{worst},{difference},{converged}"
+            let (difference, converged) = (&record.mean_difference, &record.converged);
+            let generation = &record.generation;
+            csv_line(
+                &mut csv,
+                &[generation, &best, &median, &worst, difference, converged],
             );
         }
         Some(csv)
     }
 
     fn help_text(&self) -> &'static str {
-        "Mean time steps of a scored trial of the best, the median and the worst of the better\n\
-         half of the population (Thesis Figure 4.8); fewer is better. Fitness is noisy: the same\n\
-         individual scores differently in every generation, and the best is the luckiest too.\n\
-         Below, the mean structural difference of the better half to the best (Figure 4.7): 0\n\
-         when all have one structure, which ends evolution."
+        "Mean time steps per scored trial of the best, the median and the worst individual of the\n\
+         better half of the population (Thesis Figure 4.8); fewer are better. Fitness is noisy:\n\
+         the same individual scores differently in every generation, and the best is also the\n\
+         luckiest. The lower chart shows the mean structural difference of the better half to\n\
+         the best (Figure 4.7). At 0 they all have one structure, and evolution ends."
     }
 }
 
-/// An area without its first column.
-fn indented(area: Rect) -> Rect {
-    Rect {
-        x: area.x + 1.min(area.width),
-        width: area.width.saturating_sub(1),
-        ..area
-    }
-}
-
-/// Individuals in the better half.
-fn better_half(record: &GenerationRecord) -> usize {
-    record.individuals.len() / 2
-}
-
-/// Mean time steps of a trial of the best, the median and the worst of the better half.
+/// Returns the mean time steps per trial of the best, the median and the worst of the better
+/// half; `None` where one of them is unknown.
 fn better_half_steps(record: &GenerationRecord) -> Option<[f64; 3]> {
-    let half = better_half(record).max(1);
+    let half = (record.individuals.len() / 2).max(1);
     let at = |rank: usize| {
         record
             .mean_trial_steps(rank)
             .filter(|steps| steps.is_finite())
     };
-    // Of an even number, the median is between the two in the middle.
+    // The median of an even number of values is the mean of the two in the middle.
     let median = (at(half.div_ceil(2))? + at(half / 2 + 1)?) / 2.0;
     Some([at(1)?, median, at(half)?])
 }
@@ -181,35 +162,37 @@ fn difference_chart(context: &ViewContext) -> Chart {
 }
 
 fn draw_legend(context: &ViewContext, shown: &GenerationRecord, line: Rect, buffer: &mut Buffer) {
-    let look = &context.look;
     let Some(steps) = better_half_steps(shown) else {
         return;
     };
+    let entries =
+        |digits| [0, 1, 2].map(|index| legend_entry(context, index, steps[index], digits));
     let room = usize::from(line.width.saturating_sub(1));
-    // Where curves are drawn with signs, the legend says whose sign is which.
-    let names = match by_chance(context) {
-        Some(_) => ["first", "middle", "last"],
-        None => CURVES.map(|(name, _)| name),
-    };
-    let entry = |index: usize, digits: usize| {
-        let sign = match look.signs.dots {
-            true => String::new(),
-            false => format!("{} ", look.signs.series[(2 - index) % 3]),
-        };
-        format!("{sign}{} {:.digits$}", names[index], steps[index])
-    };
-    let entries = |digits: usize| [0, 1, 2].map(|index| entry(index, digits));
-    let needed =
-        |entries: &[String; 3]| entries.iter().map(|entry| width(entry) + 2).sum::<usize>();
-    let mut entries = entries(usize::from(steps[2] < 100.0));
-    if needed(&entries) > room + 2 {
-        entries = [0, 1, 2].map(|index| entry(index, 0));
+    let mut legend = entries(usize::from(steps[2] < 100.0));
+    if legend.iter().map(|entry| width(entry) + 2).sum::<usize>() > room + 2 {
+        legend = entries(0);
     }
     let mut column = 1;
-    for (entry, (_, paint)) in entries.iter().zip(CURVES) {
+    for (entry, (_, paint)) in legend.iter().zip(CURVES) {
         if usize::from(column) + width(entry) > room + 1 {
             break;
         }
-        column = put(buffer, line, (column, 0), entry, look.style(paint)) + 2;
+        column = put(buffer, line, (column, 0), entry, context.look.style(paint)) + 2;
     }
+}
+
+/// Returns name and value of a curve, with its sign where curves are drawn with ASCII signs.
+fn legend_entry(context: &ViewContext, index: usize, steps: f64, digits: usize) -> String {
+    let signs = context.look.signs;
+    let name = if random_ranks(context).is_some() {
+        ["first", "middle", "last"][index]
+    } else {
+        CURVES[index].0
+    };
+    let sign = if signs.dots {
+        String::new()
+    } else {
+        format!("{} ", signs.series[(2 - index) % 3])
+    };
+    format!("{sign}{name} {steps:.digits$}")
 }

@@ -1,7 +1,7 @@
-//! The views: one file each.
+//! The views, one file or folder each.
 //!
-//! A view fills the screen between header and hint bar; most are also a panel of the
-//! overview, where they get a corner. They draw what fits.
+//! A view fills the screen between header and hint bar. Most views are also panels of the
+//! overview, where they draw what fits.
 
 mod arena;
 mod compare;
@@ -41,7 +41,7 @@ fn view(id: ViewId) -> Box<dyn View> {
         ViewId::Population => Box::new(population::Population::default()),
         ViewId::Status => Box::new(status::Status),
         ViewId::Inspector => Box::new(inspector::Inspector::default()),
-        ViewId::PolicyMap => Box::new(policy_map::Map::default()),
+        ViewId::PolicyMap => Box::new(policy_map::PolicyMapView::default()),
         ViewId::Stepper => Box::new(stepper::Stepper::default()),
         ViewId::Compare => Box::new(compare::Compare::default()),
     }

@@ -1,4 +1,4 @@
-//! Everything at a glance.
+//! The overview: the panels of the other views, side by side.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -10,22 +10,22 @@ use crate::dashboard::keys::Action;
 use crate::dashboard::look::width;
 use crate::dashboard::view_id::ViewId;
 
-/// Everything at a glance: the panels, as many as there is room for.
+/// The overview of a run; the dashboard draws its [`panels`].
 pub(super) struct Overview;
 
-/// Columns below which there is room for four panels only.
+/// From this many columns on there are six panels, in fewer columns four.
 const WIDE: u16 = 110;
-/// Least columns of the arena.
+/// Fewest columns of the arena panel.
 const ARENA: u16 = 30;
-/// Least columns of the population.
+/// Fewest columns of the population panel.
 const POPULATION: u16 = 44;
 /// Columns of the status panel.
 const STATUS: u16 = 36;
 
-/// The panels on an area, in the order of the Tab key.
+/// Returns the panels of the overview with their areas, in the order of the Tab key.
 ///
 /// ```text
-///   from 110 columns on:                   below:
+///   110 columns and more:                  fewer columns:
 ///  ╭ Arena ──╮╭ Hierarchy ─╮╭ Status ─╮    ╭ Arena ──────╮╭ Hierarchy ─╮
 ///  │         ││            ││         │    │             ││            │
 ///  ╰─────────╯╰────────────╯╰─────────╯    ╰─────────────╯╰────────────╯
@@ -34,14 +34,15 @@ const STATUS: u16 = 36;
 /// ```
 pub(in crate::dashboard) fn panels(area: Rect, context: &ViewContext) -> Vec<(ViewId, Rect)> {
     let upper = area.height * 14 / 25;
-    let rows = Layout::vertical([Constraint::Length(upper), Constraint::Fill(1)]).areas(area);
-    let [above, below]: [Rect; 2] = rows;
-    // As wide as the world is for its height, cells being about twice as high as wide.
+    let rows = Layout::vertical([Constraint::Length(upper), Constraint::Fill(1)]);
+    let [above, below] = rows.areas(area);
+    // In the world's proportions: a terminal cell is about twice as high as wide.
     let [width, height] = context.scenery().extent;
     let arena = f64::from(upper.saturating_sub(2)) * 2.0 * width / height;
-    let most = match area.width < WIDE {
-        true => area.width / 2,
-        false => area.width * 2 / 5,
+    let most = if area.width < WIDE {
+        area.width / 2
+    } else {
+        area.width * 2 / 5
     };
     let arena = (arena as u16 + 2).max(ARENA).min(most);
     if area.width < WIDE {
@@ -77,7 +78,7 @@ pub(in crate::dashboard) fn panels(area: Rect, context: &ViewContext) -> Vec<(Vi
     ]
 }
 
-/// Columns of the policy panel: a share of all, and those of the longest name of a state type.
+/// Returns the columns of the policy panel: wide enough for the longest state type, within limits.
 fn policy_columns(context: &ViewContext, all: u16) -> u16 {
     let types = context.catalogue().state_types.iter().enumerate();
     let longest = types.map(|(index, info)| width(&policy::title(index, &info.description)));
@@ -99,18 +100,19 @@ impl View for Overview {
         "Overview"
     }
 
-    fn draw(&self, _desk: &ViewContext, _area: Rect, _buffer: &mut Buffer) {}
+    fn draw(&self, _context: &ViewContext, _area: Rect, _buffer: &mut Buffer) {}
 
     fn hints(&self) -> &'static [Action] {
         &[]
     }
 
     fn help_text(&self) -> &'static str {
-        "A population of MAXQ task hierarchies lives in one world. In every generation each\n\
-         learns while it acts in the same trials; the fewest time steps win. The best live on,\n\
-         typed crossover of the good replaces the rest, and offspring inherit what their\n\
-         parents have learned. Watch fitness fall, structures become alike, and policies settle.\n\
+        "A population of MAXQ task hierarchies evolves in one world. In every generation each\n\
+         individual learns while it acts; all face the same trials, and fewer time steps are\n\
+         better. The best survive, typed crossover of good individuals replaces the rest, and\n\
+         offspring inherit what their parents have learned. Watch how the time steps fall, the\n\
+         structures become alike, and the policies settle.\n\
          \n\
-         Tab moves the focus from panel to panel, Enter opens one, ? explains it."
+         Tab moves the focus from panel to panel, Enter opens the panel in focus, ? explains it."
     }
 }

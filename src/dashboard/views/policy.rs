@@ -1,13 +1,14 @@
-//! Which primitive subtasks the policies select.
+//! The policy view: which primitive subtasks the policies select.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::shared::{THROUGH_TIME, nothing_yet, over_generations};
+use super::shared::{
+    THROUGH_TIME, below, csv_line, draw_no_generation, over_generations, right_of, row,
+};
 use super::view::View;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
@@ -17,11 +18,11 @@ use crate::dashboard::look::{
 };
 use crate::evolution::GenerationRecord;
 
-/// Primitive-selection probabilities of each state type (Thesis Figure 4.10): now, as a
-/// bar, and over generations, as curves.
+/// Primitive-selection probabilities of each state type (Thesis Figure 4.10), as a bar for the
+/// generation shown and as curves over generations.
 ///
 /// ```text
-///  ╭ Policy  primitive subtask selected ──────╮
+///  ╭ Policy  selection probabilities ─────────╮
 ///  │ 2 empty-handed, a battery visible        │
 ///  │ ApproachBattery 53 %  |Wander 47 %       │
 ///  │ 1 ⠒⢄⡠⠔⠒│⠒⠒                               │
@@ -30,12 +31,12 @@ use crate::evolution::GenerationRecord;
 /// ```
 pub(super) struct Policy;
 
-/// Rows of a state type from which on there are curves.
+/// From this many rows on, a state type has curves.
 const WITH_CURVES: u16 = 4;
-/// Columns from which on two state types stand beside each other.
+/// From this many columns on, two state types stand side by side.
 const TWO_COLUMNS: u16 = 90;
-/// Probabilities below this are not named.
-const SMALL: f64 = 0.005;
+/// Smaller probabilities are left out.
+pub(super) const SMALL: f64 = 0.005;
 
 impl View for Policy {
     fn name(&self) -> &'static str {
@@ -48,12 +49,12 @@ impl View for Policy {
 
     fn caption(&self, context: &ViewContext) -> String {
         let separator = context.look.signs.separator;
-        format!("primitives selected {separator} mean of the better half")
+        format!("selection probabilities {separator} mean of the better half")
     }
 
     fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let Some(record) = context.shown() else {
-            return nothing_yet(context, area, buffer);
+            return draw_no_generation(context, area, buffer);
         };
         let types = record.selection_probabilities.len();
         for (index, place) in places(area, types).into_iter().enumerate() {
@@ -70,9 +71,8 @@ impl View for Policy {
         for record in context.history().generations() {
             for (index, of) in record.selection_probabilities.iter().enumerate() {
                 for (name, share) in of.iter().flatten() {
-                    let (number, name) = (record.generation, one_line(name));
-                    // Writing to a string cannot fail.
-                    let _ = writeln!(csv, "{number},{},{name},{share}", index + 1);
+                    let (number, name) = (&record.generation, one_line(name));
+                    csv_line(&mut csv, &[number, &(index + 1), &name, share]);
                 }
             }
         }
@@ -80,19 +80,20 @@ impl View for Policy {
     }
 
     fn help_text(&self) -> &'static str {
-        "With which probability the policy, followed from the root down, ends in each primitive\n\
-         subtask, averaged over sampled states of a type and the better half of the population\n\
-         (Thesis 4.5.4): now, and over generations (Figure 4.10). A type with one primitive has\n\
-         its behaviour settled by the structure; where there are two, learning chooses."
+        "The probability that the policy, followed from the root down, ends in each primitive\n\
+         subtask, as the mean over sampled states of a type and over the better half of the\n\
+         population (Thesis 4.5.4): as bars for the generation shown, as curves over all\n\
+         generations (Figure 4.10). If a type has only one primitive, the structure has settled\n\
+         the behaviour; if it has more, learning decides."
     }
 }
 
-/// The title of a state type.
+/// Returns the title of a state type.
 pub(super) fn title(index: usize, description: &str) -> String {
     format!("{} {description}", index + 1)
 }
 
-/// A place for each state type, as many as there is room for.
+/// Returns the areas of the state types, as many as fit.
 fn places(area: Rect, types: usize) -> Vec<Rect> {
     let columns = if area.width >= TWO_COLUMNS { 2 } else { 1 };
     let types = types.min(usize::from(area.height) * columns);
@@ -119,41 +120,31 @@ fn draw_type(
     buffer: &mut Buffer,
 ) {
     let look = &context.look;
-    let line = |row: u16| Rect {
-        y: area.y + row,
-        height: u16::from(row < area.height),
-        ..area
-    };
     let info = context.catalogue().state_types.get(index);
     let title = title(index, info.map_or("", |info| &info.description));
     let room = usize::from(area.width.saturating_sub(1));
     let title = fitted(&title, room, look.signs);
     let bar_row = u16::from(area.height > 1);
     if bar_row == 1 {
-        put(buffer, line(0), (1, 0), &title, look.style(Paint::Title));
+        put(buffer, area, (1, 0), &title, look.style(Paint::Title));
     }
     match &record.selection_probabilities[index] {
-        Some(of) => draw_bar(context, of, line(bar_row), buffer),
+        Some(of) => draw_bar(context, of, row(area, bar_row), buffer),
         None => {
-            let text = "no such state in this arena";
-            put(buffer, line(bar_row), (1, 0), text, look.style(Paint::Dim));
+            let text = "does not occur in this arena";
+            put(buffer, area, (1, bar_row), text, look.style(Paint::Dim));
         }
     }
     if area.height + 1 == WITH_CURVES {
-        draw_course(context, record, index, line(2), buffer);
+        draw_course(context, record, index, row(area, 2), buffer);
     }
     if area.height >= WITH_CURVES {
-        let below = Rect {
-            x: area.x + 1.min(area.width),
-            y: area.y + 2,
-            width: area.width.saturating_sub(1),
-            height: area.height - 2,
-        };
+        let below = right_of(below(area, 2), 1);
         chart(context, index).draw(look, below, buffer);
     }
 }
 
-/// The course of the primitive subtask that is selected most now.
+/// Draws how the probability of the primitive subtask selected most has changed.
 fn draw_course(
     context: &ViewContext,
     record: &GenerationRecord,
@@ -168,18 +159,21 @@ fn draw_course(
         return;
     };
     let records = context.history().generations().iter();
-    let shares = records.filter_map(|record| {
-        let of = record.selection_probabilities.get(index)?.as_ref()?;
-        of.get(name).copied()
-    });
+    let shares = records.filter_map(|record| probability(record, index, name));
     let shares: Vec<_> = shares.collect();
     let columns = usize::from(line.width.saturating_sub(2));
     let text = sparkline(&shares, [0.0, 1.0], columns, context.look.signs);
-    // Not in the colour of the bar above it: the two would be one.
+    // In the bar's colour, the line would merge with the bar above it.
     put(buffer, line, (1, 0), &text, context.look.style(Paint::Dim));
 }
 
-/// The paint of a primitive subtask.
+/// Returns the probability of selecting a primitive subtask in states of a type.
+pub(super) fn probability(record: &GenerationRecord, index: usize, name: &str) -> Option<f64> {
+    let of = record.selection_probabilities.get(index)?;
+    of.as_ref()?.get(name).copied()
+}
+
+/// Returns the paint of a primitive subtask.
 fn paint(context: &ViewContext, name: &str) -> Paint {
     let catalogue = context.catalogue();
     let mut primitives = catalogue.primitives();
@@ -187,7 +181,7 @@ fn paint(context: &ViewContext, name: &str) -> Paint {
     Paint::series(place.unwrap_or(0))
 }
 
-/// Parts of a bar, as long as they are probable.
+/// Draws a bar with a part for each primitive subtask, as long as it is probable.
 fn draw_bar(context: &ViewContext, of: &BTreeMap<String, f64>, line: Rect, buffer: &mut Buffer) {
     let look = &context.look;
     let mut parts: Vec<_> = of.iter().filter(|(_, share)| **share >= SMALL).collect();
@@ -210,26 +204,20 @@ fn draw_bar(context: &ViewContext, of: &BTreeMap<String, f64>, line: Rect, buffe
     }
 }
 
-/// Least columns of a shortened name.
+/// Fewest columns of a shortened name.
 const SHORT: usize = 8;
 
-/// Name and share, as much of it as there is room for: the share is read off the bar too.
+/// Returns name and share, as far as they fit. The share gives way first: the bar shows it too.
 fn label(context: &ViewContext, name: &str, share: f64, room: usize) -> String {
     if room < 3 {
         return String::new();
     }
     let percent = format!(" {}", percent(share));
     let rest = room.saturating_sub(width(&percent));
-    let percent = match rest >= width(name).min(SHORT) {
-        true => percent,
-        false => String::new(),
-    };
-    let name = shortened(
-        name,
-        room.saturating_sub(width(&percent)),
-        context.look.signs,
-    );
-    name + &percent
+    if rest < width(name).min(SHORT) {
+        return shortened(name, room, context.look.signs);
+    }
+    shortened(name, rest, context.look.signs) + &percent
 }
 
 fn chart(context: &ViewContext, index: usize) -> Chart {
@@ -240,17 +228,17 @@ fn chart(context: &ViewContext, index: usize) -> Chart {
         .enumerate()
         .map(|(place, primitive)| {
             let name = primitive.name(catalogue);
-            let share = |record: &GenerationRecord| {
-                let of = record.selection_probabilities.get(index)?.as_ref()?;
-                Some([record.generation as f64, *of.get(name)?])
+            let point = |record: &GenerationRecord| {
+                let share = probability(record, index, name)?;
+                Some([record.generation as f64, share])
             };
             Curve {
-                points: records.iter().map(|record| share(record)).collect(),
+                points: records.iter().map(|record| point(record)).collect(),
                 paint: Paint::series(place),
                 letter: letters.get(place).copied(),
             }
         });
-    // A primitive that is never selected has no curve to look at.
+    // A primitive that is never selected has no curve.
     let curves = curves.filter(|curve| {
         let mut points = curve.points.iter().flatten();
         points.any(|point| point[1] >= SMALL)

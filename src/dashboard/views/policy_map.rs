@@ -1,14 +1,13 @@
-//! What the selected individual would do all over the arena.
+//! The policy map: what the selected individual would do all over the arena.
 
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use ratatui::text::Line;
 
-use super::shared::nobody;
+use super::shared::{csv_line, draw_no_individual, keys, line, right_of, subject};
 use super::view::View;
 use crate::dashboard::context::Effect;
 use crate::dashboard::context::Subject;
@@ -19,51 +18,52 @@ use crate::dashboard::look::{Canvas, Layer, Paint};
 use crate::dashboard::scene::share;
 use crate::dashboard::scene::{Scene, draw_mark, draw_scene, in_proportion};
 use crate::lab::inspection::{MapView, PolicyCell, PolicyMap};
+use crate::worlds::StateType;
 
-/// Headings that keys go through.
+/// Number of headings that the keys step through.
 const HEADINGS: usize = 24;
-/// Columns of the legend.
+/// Most columns of the legend.
 const LEGEND: u16 = 34;
-/// A primitive subtask less probable than this is written small.
+/// Less probable primitive subtasks are written in lower case.
 const CLEAR: f64 = 2.0 / 3.0;
 
-/// The arena, each place with the letter of the primitive subtask that the selected
-/// individual would most probably end in there, for a heading and a load that keys turn.
+/// The arena, with the letter of the primitive subtask that the selected individual would most
+/// probably select at each position. Keys change heading and load.
 ///
 /// ```text
 ///  ╭ Policy map  individual 362 ──────────────╮
 ///  │ ⡏⠉⠉⠉⠉⠉⠉⠉⠉⠉⢹  heading 45° ↗  carrying │
 ///  │ ⡇AAAAAWWWNN⢸  A Avoid          61 %      │
 ///  │ ⡇AAAAwwNNNN⢸  N ApproachNest   22 %      │
-///  │ ⣇⣀⣀⣀⣀⣀⣀⣀⣀⣀⣸  small: less than 2 in 3   │
+///  │ ⣇⣀⣀⣀⣀⣀⣀⣀⣀⣀⣸  lower case: below 2/3     │
 ///  ╰──────────────────────────────────────────╯
 /// ```
 #[derive(Default)]
-pub(super) struct Map {
-    /// In steps of a turn divided by [`HEADINGS`].
+pub(super) struct PolicyMapView {
+    /// In units of a full turn divided by [`HEADINGS`].
     heading: usize,
     variant: usize,
     by_value: bool,
-    made: Option<Made>,
+    computed: Option<Computed>,
 }
 
-/// A map with what it was made for.
-struct Made {
+/// A computed map with the individual that it is of.
+struct Computed {
     subject: Subject,
     map: PolicyMap,
 }
 
-impl Map {
+impl PolicyMapView {
     fn heading(&self) -> f64 {
         let heading = self.heading as f64 / HEADINGS as f64 * TAU;
         if heading > PI { heading - TAU } else { heading }
     }
 
     fn map(&self) -> Option<&PolicyMap> {
-        self.made.as_ref().map(|made| &made.map)
+        Some(&self.computed.as_ref()?.map)
     }
 
-    /// What stands for a cell: a digit or a letter, and how it is painted.
+    /// Returns the digit or letter of a cell, with its paint.
     fn sign(&self, context: &ViewContext, cell: &PolicyCell, range: [f32; 2]) -> (char, Paint) {
         if self.by_value {
             let level = (share(cell.value, range) * 10.0).clamp(0.0, 9.0) as u32;
@@ -74,23 +74,18 @@ impl Map {
             };
             return (char::from_digit(level, 10).unwrap_or(' '), paint);
         }
-        let mut primitives = context.catalogue().primitives();
+        let catalogue = context.catalogue();
+        let mut primitives = catalogue.primitives();
         let place = primitives.position(|primitive| primitive == cell.primitive);
         let place = place.unwrap_or(0);
-        let letter = context
-            .catalogue()
-            .letters()
-            .get(place)
-            .copied()
-            .unwrap_or('?');
-        let letter = match cell.probability >= CLEAR {
-            true => letter,
-            false => letter.to_ascii_lowercase(),
-        };
+        let mut letter = catalogue.letters().get(place).copied().unwrap_or('?');
+        if cell.probability < CLEAR {
+            letter = letter.to_ascii_lowercase();
+        }
         (letter, Paint::series(place))
     }
 
-    /// Draws the cells where there is no wall.
+    /// Fills the blank cells of the screen with the map.
     fn shade(
         &self,
         context: &ViewContext,
@@ -108,45 +103,38 @@ impl Map {
             let cell = cell_at(map, canvas.place(column, row), extent).filter(|_| is_free);
             let Some(cell) = cell else { continue };
             let (sign, paint) = self.sign(context, cell, range);
-            let style = look.style(paint);
-            // Shaded where there are colours: letters then need not be everywhere.
+            let mut style = look.style(paint);
+            // With colours the cells are shaded, and a few letters are enough.
             let shaded = !self.by_value && style.fg.is_some() && cell.probability >= CLEAR;
             let lettered = !shaded || (column + 4 * (row % 2)) % 8 == 3;
-            let style = match shaded {
-                true => style.add_modifier(Modifier::REVERSED),
-                false => style,
-            };
+            if shaded {
+                style = style.add_modifier(Modifier::REVERSED);
+            }
             let sign = if lettered { sign } else { ' ' };
             buffer[position].set_char(sign).set_style(style);
         }
     }
 
     fn legend(&self, context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
-        let look = &context.look;
-        let keys = |action| {
-            let hint = context.keys.hint(action, look.signs);
-            hint.map_or(String::new(), |(keys, _)| keys)
-        };
         let mut lines = Vec::new();
         if context.scenery().grid.is_none() {
+            let signs = context.look.signs;
             let degrees = self.heading().to_degrees().round();
-            let eighth = (self.heading / (HEADINGS / 8)) % 8;
-            let text = format!(
-                "heading {degrees:.0}{} {}",
-                look.signs.degrees, look.signs.headings[eighth]
-            );
-            lines.push(with_keys(context, &text, &keys(Action::Left)));
+            let arrow = signs.headings[(self.heading / (HEADINGS / 8)) % 8];
+            let text = format!("heading {degrees:.0}{} {arrow}", signs.degrees);
+            lines.push(with_keys(context, &text, Action::Left));
         }
         let variants = context.experiment.variants();
         if let Some(variant) = variants.get(self.variant) {
-            lines.push(with_keys(context, variant, &keys(Action::Up)));
+            lines.push(with_keys(context, variant, Action::Up));
         }
         let mode = if self.by_value { "value" } else { "policy" };
-        lines.push(with_keys(context, mode, &keys(Action::Mode)));
+        lines.push(with_keys(context, mode, Action::Mode));
         lines.push(Line::default());
-        match self.by_value {
-            true => lines.extend(value_legend(context, map)),
-            false => lines.extend(policy_legend(context, map)),
+        if self.by_value {
+            lines.extend(value_legend(context, map))
+        } else {
+            lines.extend(policy_legend(context, map))
         }
         lines.push(Line::default());
         lines.extend(type_legend(context, map));
@@ -154,24 +142,29 @@ impl Map {
     }
 }
 
-fn with_keys(context: &ViewContext, text: &str, keys: &str) -> Line<'static> {
+/// Returns a line of the legend with the keys that change what it says.
+fn with_keys(context: &ViewContext, text: &str, action: Action) -> Line<'static> {
     Pen::new(&context.look)
         .cell(text, 20, Paint::Title)
-        .text(format!(" {keys}"), Paint::Key)
+        .text(format!(" {}", keys(context, action)), Paint::Key)
         .line()
+}
+
+/// Returns the share of the arena's cells for which something holds.
+fn share_of_cells(map: &PolicyMap, holds: impl Fn(&PolicyCell) -> bool) -> f64 {
+    let cells = || map.cells.iter().flatten();
+    let count = cells().filter(|cell| holds(cell)).count();
+    count as f64 / cells().count().max(1) as f64
 }
 
 fn policy_legend(context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
     let catalogue = context.catalogue();
-    let free = map.cells.iter().flatten().count().max(1);
     let signs = catalogue.letters().into_iter().zip(catalogue.primitives());
     let mut lines: Vec<_> = signs
         .enumerate()
         .map(|(place, (letter, primitive))| {
-            let cells = map.cells.iter().flatten();
-            let count = cells.filter(|cell| cell.primitive == primitive).count();
-            let share = count as f64 / free as f64;
-            let paint = if count > 0 {
+            let share = share_of_cells(map, |cell| cell.primitive == primitive);
+            let paint = if share > 0.0 {
                 Paint::series(place)
             } else {
                 Paint::Dim
@@ -184,48 +177,45 @@ fn policy_legend(context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
         })
         .collect();
     let note = match context.scenery().grid {
-        Some(_) => "in the cells: the greedy action",
-        None => "small letter: less than 2 in 3",
+        Some(_) => "cells: the greedy action",
+        None => "lower case: below 2/3",
     };
-    lines.push(Pen::new(&context.look).text(note, Paint::Dim).line());
+    lines.push(line(&context.look, note, Paint::Dim));
     lines
 }
 
 fn value_legend(context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
     let [low, high] = map.values().unwrap_or_default();
     let ends = [("0", Paint::Worst, low), ("9", Paint::Best, high)];
-    let head = Pen::new(&context.look).text("V(root), expected reward", Paint::Dim);
+    let head = line(&context.look, "V(root), expected return", Paint::Dim);
     let ends = ends.map(|(digit, paint, value)| {
         Pen::new(&context.look)
             .text(format!("{digit} "), paint)
             .right(&number(value), 9, Paint::Text)
             .line()
     });
-    [head.line()].into_iter().chain(ends).collect()
+    [head].into_iter().chain(ends).collect()
 }
 
-/// How much of the arena each state type is.
+/// Lists the share of the arena that each state type takes.
 fn type_legend(context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
-    let free = map.cells.iter().flatten().count().max(1);
     let types = context.catalogue().types();
     let shares = types.map(|state_type| {
-        let cells = map.cells.iter().flatten();
-        let count = cells.filter(|cell| cell.state_type == state_type).count();
-        (state_type, count)
+        let share = share_of_cells(map, |cell| cell.state_type == state_type);
+        (state_type, share)
     });
-    shares
-        .filter(|(_, count)| *count > 0)
-        .map(|(state_type, count)| {
-            let text = format!("state type {}", state_type.number());
-            Pen::new(&context.look)
-                .cell(&text, 19, Paint::Dim)
-                .right(&percent(count as f64 / free as f64), 6, Paint::Dim)
-                .line()
-        })
-        .collect()
+    let shares = shares.filter(|(_, share)| *share > 0.0);
+    let line = |(state_type, share): (StateType, f64)| {
+        let text = format!("state type {}", state_type.number());
+        Pen::new(&context.look)
+            .cell(&text, 19, Paint::Dim)
+            .right(&percent(share), 6, Paint::Dim)
+            .line()
+    };
+    shares.map(line).collect()
 }
 
-/// Map and legend.
+/// Returns the areas of map and legend.
 fn areas(context: &ViewContext, area: Rect) -> (Rect, Rect) {
     let legend = LEGEND.min(area.width / 2);
     let room = Rect {
@@ -237,15 +227,10 @@ fn areas(context: &ViewContext, area: Rect) -> (Rect, Rect) {
         None => in_proportion(room, context.scenery().extent),
     };
     let map = Rect { x: area.x, ..map };
-    let legend = Rect {
-        x: map.right() + 2,
-        width: area.right().saturating_sub(map.right() + 2),
-        ..area
-    };
-    (map, legend)
+    (map, right_of(area, map.width + 2))
 }
 
-impl View for Map {
+impl View for PolicyMapView {
     fn name(&self) -> &'static str {
         "policy-map"
     }
@@ -259,14 +244,13 @@ impl View for Map {
     }
 
     fn caption(&self, context: &ViewContext) -> String {
-        let subject = context.player.subject();
-        subject.map_or(String::new(), |subject| subject.to_string())
+        subject(context)
     }
 
     fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let look = &context.look;
         let Some(map) = self.map() else {
-            return nobody(context, area, buffer);
+            return draw_no_individual(context, area, buffer);
         };
         let (place, legend) = areas(context, area);
         let scenery = context.scenery();
@@ -295,8 +279,8 @@ impl View for Map {
         &[Action::Mode, Action::Best, Action::ViewInspector]
     }
 
-    fn can(&self, _desk: &ViewContext, action: Action) -> bool {
-        action != Action::Mode || self.made.is_some()
+    fn can(&self, _context: &ViewContext, action: Action) -> bool {
+        action != Action::Mode || self.computed.is_some()
     }
 
     fn act(&mut self, context: &mut ViewContext, action: Action) -> Option<Vec<Effect>> {
@@ -313,9 +297,9 @@ impl View for Map {
     }
 
     fn prepare(&mut self, context: &ViewContext) {
-        let Some((individual, subject)) = context.player.individual().zip(context.player.subject())
+        let Some((inspected, subject)) = context.player.individual().zip(context.player.subject())
         else {
-            self.made = None;
+            self.computed = None;
             return;
         };
         let (width, height) = context.size;
@@ -329,10 +313,10 @@ impl View for Map {
             columns,
             rows,
         };
-        let made = self.made.as_ref();
-        if made.is_none_or(|made| made.subject != subject || made.map.view != view) {
-            let map = context.experiment.policy_map(individual, view);
-            self.made = Some(Made { subject, map });
+        let computed = self.computed.as_ref();
+        if computed.is_none_or(|of| of.subject != subject || of.map.view != view) {
+            let map = context.experiment.policy_map(inspected, view);
+            self.computed = Some(Computed { subject, map });
         }
     }
 
@@ -345,30 +329,31 @@ impl View for Map {
             let Some(cell) = cell else { continue };
             let x = (index % columns) as f64 + 0.5;
             let y = (rows - index / columns) as f64 - 0.5;
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                csv,
-                "{},{},{},{},{},{}",
-                x * width / columns as f64,
-                y * height / rows as f64,
-                cell.state_type.number(),
-                context.catalogue().subtask(cell.primitive).name,
-                cell.probability,
-                cell.value
+            csv_line(
+                &mut csv,
+                &[
+                    &(x * width / columns as f64),
+                    &(y * height / rows as f64),
+                    &cell.state_type.number(),
+                    &cell.primitive.name(context.catalogue()),
+                    &cell.probability,
+                    &cell.value,
+                ],
             );
         }
         Some(csv)
     }
 
     fn help_text(&self) -> &'static str {
-        "What the selected individual would do at every place, for one heading and load: its\n\
-         policy is followed from the root down, and the letter is that of the primitive subtask\n\
-         that it most probably ends in. As values: V(root), from 0, the lowest, to 9. Where the\n\
-         body has no room nothing is drawn."
+        "What the selected individual would do at every position, for one heading and load: its\n\
+         policy is followed from the root down, and the letter names the primitive subtask that\n\
+         it most probably ends in. Percentages are shares of the arena. In value mode a digit\n\
+         shows V(root), from 0 (lowest) to 9 (highest). Positions where the robot does not fit\n\
+         stay blank."
     }
 }
 
-/// The cell of the map at a place.
+/// Returns the cell of the map at a position of the world.
 fn cell_at(map: &PolicyMap, at: [f64; 2], extent: [f64; 2]) -> Option<&PolicyCell> {
     let MapView { columns, rows, .. } = map.view;
     let column = (at[0] / extent[0] * columns as f64) as usize;

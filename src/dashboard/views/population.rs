@@ -1,21 +1,31 @@
-//! All individuals of a generation.
-
-use std::fmt::Write;
+//! The population view: all individuals of a generation.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use super::shared::{by_chance, nothing_yet, origin};
+use super::shared::{
+    below, csv_line, draw_no_generation, mark_selected, mean_steps, origin, random_ranks, row,
+};
 use super::view::View;
 use crate::dashboard::context::Effect;
 use crate::dashboard::context::{Chosen, ViewContext};
 use crate::dashboard::context::{Clicked, line_at};
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, one_line, put, wrapped};
+use crate::dashboard::look::{Paint, fitted, one_line, put, width, wrapped};
 use crate::dashboard::view_id::ViewId;
 use crate::evolution::RankedRecord;
 
-/// All individuals of a generation, best first.
+/// All individuals of a generation as a table, best first.
+///
+/// ```text
+///  ╭ Population  generation 26 · 14 individuals ──────────────────────╮
+///  │▲rank    id  steps failed comp prim  diff origin      hierarchy   │
+///  │▸   1   362  128.6           4    3  same reproduced  (Root (Fi…  │   the selected one
+///  │    2   340  141.2      1    4    4    -2 27 x 30     (Root (Fi…  │
+///  │                                                                  │
+///  │ 362: (Root (FindBattery Wander) ApproachBattery ...)             │   its whole hierarchy
+///  ╰──────────────────────────────────────────────────────────────────╯
+/// ```
 #[derive(Default)]
 pub(super) struct Population {
     by: Column,
@@ -37,9 +47,11 @@ enum Column {
     Tree,
 }
 
-/// Columns with their heads and widths, in their order. The most important ones are kept
-/// where there is little room.
-const COLUMNS: [(Column, &str, u16); 9] = [
+/// A column with its head and its width.
+type Spec = (Column, &'static str, u16);
+
+/// The columns from left to right.
+const COLUMNS: [Spec; 9] = [
     (Column::Rank, "rank", 4),
     (Column::Id, "id", 5),
     (Column::Steps, "steps", 6),
@@ -51,7 +63,7 @@ const COLUMNS: [(Column, &str, u16); 9] = [
     (Column::Tree, "hierarchy", 20),
 ];
 
-/// In which order columns are given up.
+/// The columns that give way where there is little room, the first first.
 const GIVEN_UP: [Column; 5] = [
     Column::Tree,
     Column::Failed,
@@ -60,8 +72,8 @@ const GIVEN_UP: [Column; 5] = [
     Column::Id,
 ];
 
-/// The columns that there is room for.
-fn columns(width: u16) -> Vec<(Column, &'static str, u16)> {
+/// Returns the columns that fit.
+fn columns(width: u16) -> Vec<Spec> {
     let mut columns = COLUMNS.to_vec();
     for given_up in GIVEN_UP {
         let needed: u16 = columns.iter().map(|(_, _, width)| width + 1).sum();
@@ -74,7 +86,7 @@ fn columns(width: u16) -> Vec<(Column, &'static str, u16)> {
 }
 
 impl Column {
-    /// The columns that the table can be sorted by, in the order of the key.
+    /// Returns the column to sort by after this one.
     fn next(self) -> Self {
         let sortable = &COLUMNS[..COLUMNS.len() - 1];
         let here = sortable.iter().position(|(column, ..)| *column == self);
@@ -82,7 +94,7 @@ impl Column {
         sortable[next].0
     }
 
-    /// What individuals are ordered by.
+    /// Returns the sort key of an individual.
     fn key(self, individual: &RankedRecord) -> (i64, String) {
         let large = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
         let number = match self {
@@ -102,7 +114,7 @@ impl Column {
         (number, text)
     }
 
-    /// What stands in the table.
+    /// Returns the text of an individual's cell.
     fn text(self, individual: &RankedRecord) -> String {
         match self {
             Self::Rank => individual.rank.to_string(),
@@ -123,17 +135,16 @@ impl Column {
         }
     }
 
-    fn is_number(self) -> bool {
-        !matches!(self, Self::Origin | Self::Tree)
+    /// Aligns a text in the column: numbers end at its right edge.
+    fn aligned(self, text: String, columns: u16) -> String {
+        match self {
+            Self::Origin | Self::Tree => text,
+            _ => format!("{text:>columns$}", columns = usize::from(columns)),
+        }
     }
 }
 
-/// Mean time steps of a scored trial.
-fn mean_steps(individual: &RankedRecord) -> f64 {
-    individual.fitness_steps as f64 / individual.trials.len().max(1) as f64
-}
-
-/// Scored trials that ended at the limit.
+/// Counts the scored trials that were truncated at the step limit.
 fn failed(individual: &RankedRecord) -> usize {
     let trials = individual.trials.iter();
     trials.filter(|trial| !trial.delivered).count()
@@ -141,7 +152,7 @@ fn failed(individual: &RankedRecord) -> usize {
 
 fn draw_individual(
     context: &ViewContext,
-    columns: &[(Column, &str, u16)],
+    columns: &[Spec],
     individual: &RankedRecord,
     is_selected: bool,
     line: Rect,
@@ -153,30 +164,23 @@ fn draw_individual(
         (false, 1) => Paint::Best,
         _ => Paint::Text,
     };
-    let style = look.style(paint);
     if is_selected {
-        buffer.set_style(line.intersection(buffer.area), style);
-        put(buffer, line, (0, 0), look.signs.pointer, style);
+        mark_selected(look, line, buffer);
     }
     let mut at = 1;
-    for (column, _, width) in columns {
-        let text = column.text(individual);
+    for &(column, _, width) in columns {
         let room = match column {
             Column::Tree => line.width.saturating_sub(at),
-            _ => *width,
+            _ => width,
         };
-        let text = fitted(&text, usize::from(room), look.signs);
-        let room = usize::from(*width);
-        let text = match column.is_number() {
-            true => format!("{text:>room$}"),
-            false => text,
-        };
-        put(buffer, line, (at, 0), &text, style);
+        let text = fitted(&column.text(individual), room.into(), look.signs);
+        let text = column.aligned(text, width);
+        put(buffer, line, (at, 0), &text, look.style(paint));
         at += width + 1;
     }
 }
 
-/// Writes the whole hierarchy of the selected individual, as much of it as there is room for.
+/// Writes the whole hierarchy of the selected individual, if it fits.
 fn draw_whole(context: &ViewContext, area: Rect, buffer: &mut Buffer) {
     let Some(individual) = context.selected() else {
         return;
@@ -204,7 +208,7 @@ impl Population {
         individuals
     }
 
-    /// The individuals that there is room for below the head, the selected one among them.
+    /// Returns the individuals that fit below the head, the selected one among them.
     fn visible<'d>(&self, context: &'d ViewContext, area: Rect) -> Vec<&'d RankedRecord> {
         let sorted = self.sorted(context);
         let selected = context.selected().map(|individual| individual.id);
@@ -216,32 +220,23 @@ impl Population {
         sorted.into_iter().skip(skipped).take(rows).collect()
     }
 
-    /// The heads of the columns; the one that the table is sorted by says so.
-    fn draw_head(
-        &self,
-        context: &ViewContext,
-        columns: &[(Column, &str, u16)],
-        area: Rect,
-        buffer: &mut Buffer,
-    ) {
+    /// Draws the heads of the columns, with a sign at the one that the table is sorted by.
+    fn draw_head(&self, context: &ViewContext, columns: &[Spec], area: Rect, buffer: &mut Buffer) {
         let look = &context.look;
         let mut at: u16 = 1;
-        for (column, head, width) in columns {
-            let sorted = *column == self.by;
-            let sign = look.signs.order[usize::from(self.reversed)];
-            let head = match sorted {
-                true => format!("{sign}{head}"),
-                false => (*head).to_owned(),
+        for &(column, head, columns) in columns {
+            let (head, paint) = if column == self.by {
+                let sign = look.signs.order[usize::from(self.reversed)];
+                (format!("{sign}{head}"), Paint::Title)
+            } else {
+                (head.to_owned(), Paint::Dim)
             };
-            let room = usize::from(*width);
-            let text = match column.is_number() {
-                true => format!("{head:>room$}"),
-                false => head,
+            let text = column.aligned(head, columns);
+            // The sign before a head as wide as its column takes the gap between columns.
+            let over = match column {
+                Column::Origin | Column::Tree => 0,
+                _ => (width(&text) as u16).saturating_sub(columns),
             };
-            let paint = if sorted { Paint::Title } else { Paint::Dim };
-            // A sign before the longest head takes the gap between columns.
-            let over = u16::try_from(text.chars().count().saturating_sub(room)).unwrap_or(0);
-            let over = if column.is_number() { over } else { 0 };
             put(
                 buffer,
                 area,
@@ -249,24 +244,21 @@ impl Population {
                 &text,
                 look.style(paint),
             );
-            at += width + 1;
+            at += columns + 1;
         }
     }
 
-    /// Selects the individual some lines further down.
+    /// Moves the selection by some lines.
     fn select(&self, context: &mut ViewContext, by: i64) {
         let sorted = self.sorted(context);
         let selected = context.selected().map(|individual| individual.id);
-        let here = sorted
-            .iter()
-            .position(|individual| Some(individual.id) == selected);
+        let is_selected = |individual: &&RankedRecord| Some(individual.id) == selected;
         let last = sorted.len().saturating_sub(1);
-        let next = here.map_or(0, |here| {
+        let next = sorted.iter().position(is_selected).map_or(0, |here| {
             (here as i64).saturating_add(by).clamp(0, last as i64)
         });
-        let chosen = sorted.get(next as usize).map(|individual| individual.id);
-        if let Some(id) = chosen {
-            context.chosen = Chosen::Id(id);
+        if let Some(individual) = sorted.get(next as usize) {
+            context.chosen = Chosen::Id(individual.id);
         }
     }
 }
@@ -289,8 +281,8 @@ impl View for Population {
             let count = record.individuals.len();
             let separator = context.look.signs.separator;
             let generation = record.generation;
-            match by_chance(context) {
-                // What matters most first, where there is little room.
+            match random_ranks(context) {
+                // Where there is little room, only the first part is shown.
                 Some(ranked) => format!("{ranked} {separator} generation {generation}"),
                 None => format!("generation {generation} {separator} {count} individuals"),
             }
@@ -298,39 +290,18 @@ impl View for Population {
     }
 
     fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
-        if context.shown().is_none() {
-            return nothing_yet(context, area, buffer);
-        }
+        let Some(shown) = context.shown() else {
+            return draw_no_generation(context, area, buffer);
+        };
         let columns = columns(area.width);
         self.draw_head(context, &columns, area, buffer);
         let selected = context.selected().map(|individual| individual.id);
-        for (row, individual) in self.visible(context, area).into_iter().enumerate() {
-            let line = Rect {
-                y: area.y + 1 + row as u16,
-                height: 1,
-                ..area
-            };
-            draw_individual(
-                context,
-                &columns,
-                individual,
-                Some(individual.id) == selected,
-                line,
-                buffer,
-            );
+        for (index, individual) in (1..).zip(self.visible(context, area)) {
+            let (line, is_selected) = (row(area, index), Some(individual.id) == selected);
+            draw_individual(context, &columns, individual, is_selected, line, buffer);
         }
-        let used = area.height.min(
-            context
-                .shown()
-                .map_or(0, |shown| shown.individuals.len() as u16)
-                + 2,
-        );
-        let rest = Rect {
-            y: area.y + used,
-            height: area.height - used,
-            ..area
-        };
-        draw_whole(context, rest, buffer);
+        let rows = u16::try_from(shown.individuals.len() + 2).unwrap_or(u16::MAX);
+        draw_whole(context, below(area, rows), buffer);
     }
 
     fn hints(&self) -> &'static [Action] {
@@ -377,29 +348,29 @@ impl View for Population {
             "rank,id,fitness_steps,trials,composites,primitives,difference,origin,tree\n",
         );
         for individual in self.sorted(context) {
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                csv,
-                "{},{},{},{},{},{},{},{},{}",
-                individual.rank,
-                individual.id,
-                individual.fitness_steps,
-                individual.trials.len(),
-                individual.composites,
-                individual.primitives.len(),
-                individual.difference_to_best,
-                origin(&individual.origin),
-                one_line(&individual.tree)
+            csv_line(
+                &mut csv,
+                &[
+                    &individual.rank,
+                    &individual.id,
+                    &individual.fitness_steps,
+                    &individual.trials.len(),
+                    &individual.composites,
+                    &individual.primitives.len(),
+                    &individual.difference_to_best,
+                    &origin(&individual.origin),
+                    &one_line(&individual.tree),
+                ],
             );
         }
         Some(csv)
     }
 
     fn help_text(&self) -> &'static str {
-        "All individuals of the generation, best first. steps: mean time steps of a scored trial,\n\
-         the fitness; failed: trials that ended at the limit; comp, prim: composite and distinct\n\
-         primitive subtasks; diff: structural difference to the best (Thesis 4.5.2). origin: a\n\
-         reproduced individual lives on with what it has learned; 165 x 172 is individual 165\n\
-         with a subtree of 172."
+        "All individuals of the generation, best first. steps: the fitness, mean time steps per\n\
+         scored trial. failed: scored trials that were truncated at the step limit. comp, prim:\n\
+         the number of composite and of distinct primitive subtasks. diff: structural difference\n\
+         to the best (Thesis 4.5.2). origin: a reproduced individual survived with what it has\n\
+         learned; 165 x 172 is individual 165 with a subtree of 172."
     }
 }

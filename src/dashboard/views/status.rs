@@ -1,18 +1,18 @@
-//! What the run is doing.
+//! The status view: what the run is doing.
 
 use std::time::Duration;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::shared::by_chance;
+use super::shared::random_ranks;
 use super::view::View;
 use crate::dashboard::context::{Mode, ViewContext};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put, width};
 use crate::lab::Ending;
 
-/// What the run is doing.
+/// The state of the run, its settings, and the latest messages.
 ///
 /// ```text
 ///  ╭ Status ────────────────────────────╮
@@ -21,12 +21,12 @@ use crate::lab::Ending;
 ///  │ individuals  ━━━━━━━━───── 7 of 14 │
 ///  │ time left    at most 3 min         │
 ///  │ ...                                │
-///  │ 0:12 checkpoint saved              │   what was said last
+///  │ 0:12 checkpoint saved              │   the latest message
 ///  ╰────────────────────────────────────╯
 /// ```
 pub(super) struct Status;
 
-/// Column of the values.
+/// Column in which the values start.
 const VALUES: u16 = 13;
 
 impl View for Status {
@@ -45,7 +45,7 @@ impl View for Status {
         for (name, value, paint) in facts(context, room) {
             put(buffer, area, (1, row), name, look.style(Paint::Dim));
             let value = match name {
-                // Of a path the end tells more.
+                // The end of a path tells more than its beginning.
                 "folder" => fitted_end(&one_line(&value), room, look.signs),
                 _ => fitted(&one_line(&value), room, look.signs),
             };
@@ -70,10 +70,11 @@ impl View for Status {
     }
 
     fn help_text(&self) -> &'static str {
-        "What the run is doing. A control step is one time step of one individual. The time left\n\
-         is that to the generation limit; evolution ends as soon as the better half of the\n\
-         population has one structure. Pausing stops evolution; freezing holds what you see\n\
-         while evolution goes on."
+        "What the run is doing. computed: the time steps simulated so far. time left: until the\n\
+         generation limit; evolution ends earlier when it has converged, that is, when the\n\
+         better half of the population has one structure. Reproduced individuals survive into\n\
+         the next generation. Pausing stops evolution; freezing holds the display while\n\
+         evolution continues."
     }
 }
 
@@ -90,30 +91,28 @@ fn facts(context: &ViewContext, room: usize) -> Vec<Fact> {
         None => String::from("none yet"),
     };
     let evolution = &scenario.evolution;
-    let survivors = format!(
-        "{}, {} of them live on",
-        evolution.population_size, evolution.reproduced
-    );
-    let trials = format!("{}, last half scored", evolution.trials_per_generation);
+    let (size, reproduced) = (evolution.population_size, evolution.reproduced);
+    let population = format!("{size} ({reproduced} reproduced)");
+    let trials = format!("{} (last half scored)", evolution.trials_per_generation);
     facts.extend([
         ("checkpoint", saved, Paint::Text),
         ("scenario", scenario.name.clone(), Paint::Text),
         ("seed", context.experiment.seed().to_string(), Paint::Text),
-        ("population", survivors, Paint::Text),
+        ("population", population, Paint::Text),
         ("trials", trials, Paint::Text),
         ("folder", context.folder.clone(), Paint::Text),
     ]);
-    if by_chance(context).is_some() {
-        facts.push(("ranks", String::from("drawn by chance"), Paint::Notice));
+    if random_ranks(context).is_some() {
+        facts.push(("ranks", String::from("drawn at random"), Paint::Notice));
     }
     facts.extend(changed(context, room));
     facts
 }
 
-/// Settings that are told one by one.
-const TOLD: usize = 4;
+/// Most changed settings that are listed.
+const LISTED: usize = 4;
 
-/// A setting with as much of its path as there is room for.
+/// Returns a setting with as much of its path as fits.
 fn in_columns(setting: &str, room: usize) -> String {
     let (path, value) = setting.split_once('=').unwrap_or((setting, ""));
     let inner = path.match_indices('.').map(|(dot, _)| &path[dot + 1..]);
@@ -123,68 +122,60 @@ fn in_columns(setting: &str, room: usize) -> String {
     format!("{}={value}", path.unwrap_or(""))
 }
 
-/// In what the scenario departs from the embedded one of its name.
+/// Lists the settings in which the scenario differs from the embedded scenario of its name.
 fn changed(context: &ViewContext, room: usize) -> Vec<Fact> {
     let names = std::iter::once("changed").chain(std::iter::repeat(""));
-    let told = context.changed.iter().take(TOLD);
-    let told = names
-        .zip(told)
-        .map(|(name, setting)| (name, in_columns(setting, room), Paint::Text));
-    let mut facts: Vec<_> = told.collect();
-    match context.changed.len().saturating_sub(TOLD) {
-        0 => {}
-        more => facts.push(("", format!("and {more} more"), Paint::Dim)),
+    let settings = names.zip(context.changed.iter().take(LISTED));
+    let fact = |(name, setting): (_, &String)| (name, in_columns(setting, room), Paint::Text);
+    let mut facts: Vec<_> = settings.map(fact).collect();
+    let more = context.changed.len().saturating_sub(LISTED);
+    if more > 0 {
+        facts.push(("", format!("and {more} more"), Paint::Dim));
     }
     facts
 }
 
-/// How far evolution is, and how fast.
+/// Tells how far evolution has come, and how fast it runs.
 fn progress(context: &ViewContext, room: usize) -> Vec<Fact> {
-    let model = context.live_history();
+    let history = context.live_history();
     let limit = context.scenario().evolution.generation_limit;
-    let lived = model.latest().map_or(0, |record| record.generation);
-    let mut facts = vec![(
-        "generation",
-        format!("{lived} of at most {limit}"),
-        Paint::Text,
-    )];
-    if let Some(progress) = model.progress() {
-        let (lived, all) = (progress.lived, progress.population);
-        let (name, text) = match progress.generation {
-            0 => ("learning", String::from("primitive subtasks")),
-            _ => ("individuals", bar(context, lived, all, room)),
-        };
-        facts.push((name, text, Paint::Text));
+    let latest = history.latest().map_or(0, |record| record.generation);
+    let text = |name, text: String| (name, text, Paint::Text);
+    let mut facts = vec![text("generation", format!("{latest} of at most {limit}"))];
+    if let Some(progress) = history.progress() {
+        facts.push(match progress.generation {
+            0 => text("training", String::from("primitive subtasks")),
+            _ => {
+                let bar = bar(context, progress.lived, progress.population, room);
+                text("individuals", bar)
+            }
+        });
     }
-    if let Some(record) = model.latest() {
-        let steps = format!("{} steps", thousands(record.control_steps));
-        facts.push(("computed", steps, Paint::Text));
+    if let Some(record) = history.latest() {
+        let steps = thousands(record.control_steps);
+        facts.push(text("computed", format!("{steps} steps")));
     }
-    match model.ending() {
+    match history.ending() {
         Some(Ending::Converged) => {
-            let text = String::from("one structure is left");
-            facts.push(("ended", text, Paint::Good));
+            facts.push(("ended", String::from("converged"), Paint::Good));
         }
         Some(Ending::GenerationLimit) => {
-            let text = String::from("generation limit");
-            facts.push(("ended", text, Paint::Notice));
+            facts.push(("ended", String::from("at generation limit"), Paint::Notice));
         }
         None if context.mode != Mode::Replay => {
+            let unknown = || String::from("?");
             let rate = context.pace.steps_per_second();
-            let rate = rate.map_or(String::from("?"), |rate| thousands(rate as u64));
-            facts.push(("speed", format!("{rate} steps/s"), Paint::Text));
-            let left = context
-                .pace
-                .time_to(limit)
-                .map_or(String::from("?"), duration);
-            facts.push(("time left", format!("at most {left}"), Paint::Text));
+            let rate = rate.map_or_else(unknown, |rate| thousands(rate as u64));
+            let left = context.pace.time_to(limit).map_or_else(unknown, duration);
+            facts.push(text("speed", format!("{rate} steps/s")));
+            facts.push(text("time left", format!("at most {left}")));
         }
         None => {}
     }
     facts
 }
 
-/// A bar with its numbers.
+/// Returns a progress bar with its numbers.
 fn bar(context: &ViewContext, part: usize, whole: usize, room: usize) -> String {
     let numbers = format!(" {part} of {whole}");
     let columns = room.saturating_sub(numbers.len() + 1).min(24);
@@ -194,7 +185,7 @@ fn bar(context: &ViewContext, part: usize, whole: usize, room: usize) -> String 
     format!("{}{unfilled}{numbers}", signs.filled.repeat(filled))
 }
 
-/// A number with its digits in threes.
+/// Writes a number with its digits in groups of three.
 fn thousands(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -216,7 +207,7 @@ fn duration(time: Duration) -> String {
     }
 }
 
-/// Minutes and seconds since the dashboard was opened.
+/// Writes a time since the dashboard was opened, as minutes and seconds.
 fn clock(time: Duration) -> String {
     let seconds = time.as_secs();
     format!("{}:{:02}", seconds / 60, seconds % 60)
@@ -227,14 +218,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_read_in_threes() {
+    fn digits_are_grouped_in_threes() {
         assert_eq!(thousands(7), "7");
         assert_eq!(thousands(1_791_820), "1 791 820");
         assert_eq!(duration(Duration::from_secs(3725)), "1 h 2 min");
     }
 
     #[test]
-    fn a_setting_keeps_its_last_name() {
+    fn a_setting_keeps_the_end_of_its_path() {
         let setting = "world.foraging.turn.rate=0.5";
         assert_eq!(in_columns(setting, 40), setting);
         assert_eq!(in_columns(setting, 14), "turn.rate=0.5");

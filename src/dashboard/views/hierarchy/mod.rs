@@ -1,16 +1,16 @@
-//! The task hierarchy.
+//! The hierarchy view: the task hierarchy of an individual.
 
-mod story;
+mod details;
 mod table;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use super::shared::{nothing_yet, pace};
+use super::shared::{self, click_node, csv_line, draw_no_generation, pace};
 use super::view::View;
+use crate::dashboard::context::Clicked;
 use crate::dashboard::context::Effect;
 use crate::dashboard::context::ViewContext;
-use crate::dashboard::context::{Clicked, line_at};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{last_start, mark_more};
 use crate::dashboard::look::{Paint, fitted, one_line, put};
@@ -18,8 +18,8 @@ use crate::dashboard::view_id::ViewId;
 use crate::hierarchy::{Tree, to_dot};
 use table::Table;
 
-/// The task hierarchy of the individual that is looked at, its active path lit; below it,
-/// what the selected subtask is, and how the individual came to be and did.
+/// The task hierarchy of an individual, with the active path of the rollout highlighted. Below it
+/// stand the selected subtask, and how the individual was made and scored.
 ///
 /// ```text
 ///  ╭ Hierarchy  id 362, gen 26 · rank 1 ─────────────────╮
@@ -30,8 +30,8 @@ use table::Table;
 ///  │ •└─ ApproachBattery     2               310         │
 ///  │                                                     │
 ///  │  FindBattery: find a battery                        │
-///  │  composite, active in 1, its goal 2 3 4 done        │
-///  │  made of 340 by putting ...                         │
+///  │  composite, active in state types 1; goal: 2 3 4    │
+///  │  340 with its Wander replaced by Avoid of 351       │
 ///  ╰─────────────────────────────────────────────────────╯
 /// ```
 pub(super) struct Hierarchy;
@@ -54,21 +54,21 @@ impl View for Hierarchy {
     }
 
     fn caption(&self, context: &ViewContext) -> String {
-        let inspected = context.inspected();
-        inspected.map_or(String::new(), |(generation, individual)| {
-            let separator = context.look.signs.separator;
-            let (id, rank) = (individual.id, individual.rank);
-            let pace = match context.player.rollout() {
-                Some(_) => format!(" {separator} {}", pace(context)),
-                None => String::new(),
-            };
-            format!("id {id}, gen {generation} {separator} rank {rank}{pace}")
-        })
+        let Some((generation, individual)) = context.inspected() else {
+            return String::new();
+        };
+        let separator = context.look.signs.separator;
+        let (id, rank) = (individual.id, individual.rank);
+        let pace = match context.player.rollout() {
+            Some(_) => format!(" {separator} {}", pace(context)),
+            None => String::new(),
+        };
+        format!("id {id}, gen {generation} {separator} rank {rank}{pace}")
     }
 
     fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let Some((_, individual)) = context.inspected() else {
-            return nothing_yet(context, area, buffer);
+            return draw_no_generation(context, area, buffer);
         };
         let look = &context.look;
         let Some(tree) = context.tree(individual) else {
@@ -86,13 +86,8 @@ impl View for Hierarchy {
         }
         let below = nodes.saturating_sub(skipped + usize::from(place.height));
         mark_more(look, [skipped, below], place, buffer);
-        let used = (nodes as u16).saturating_add(2).min(area.height);
-        let rest = Rect {
-            y: area.y + used,
-            height: area.height - used,
-            ..area
-        };
-        story::draw(context, &tree, individual, rest, buffer);
+        let rest = shared::below(area, (nodes as u16).saturating_add(2));
+        details::draw(context, &tree, individual, rest, buffer);
     }
 
     fn hints(&self) -> &'static [Action] {
@@ -138,10 +133,8 @@ impl View for Hierarchy {
         let Some(tree) = context.inspected_tree() else {
             return Clicked::Nothing;
         };
-        let (place, skipped) = place_of_tree(context, &tree, area);
-        let node = line_at(at, place, 0).map(|line| line + skipped);
-        let node = node.filter(|node| *node < tree.nodes().len());
-        Clicked::on(node, context.node_in(&tree), |node| context.node = node)
+        let place = place_of_tree(context, &tree, area);
+        click_node(context, tree.nodes().len(), place, at)
     }
 
     fn csv(&self, context: &ViewContext) -> Option<String> {
@@ -155,10 +148,11 @@ impl View for Hierarchy {
             let subtask = context.catalogue().subtask(node.subtask);
             let types = subtask.active.to_string().replace(',', " ");
             let [temperature, visits] = table.numbers(index);
-            csv.push_str(&format!(
-                "{index},{parent},{},{types},{temperature},{visits}\n",
-                subtask.name
-            ));
+            let name = &subtask.name;
+            csv_line(
+                &mut csv,
+                &[&index, &parent, name, &types, &temperature, &visits],
+            );
         }
         Some(csv)
     }
@@ -168,22 +162,21 @@ impl View for Hierarchy {
     }
 
     fn help_text(&self) -> &'static str {
-        "The task hierarchy of an individual, its genome. Root and the other composite subtasks\n\
-         (bold) choose among their children until they terminate; primitive subtasks act. Lit is\n\
-         the path from root to action in the rollout. State types: in which a subtask can be\n\
-         active (Thesis Tables 4.2, 4.3). T: temperature of a composite's softmax; it falls\n\
-         whenever the subtask terminates, and choices become greedy. invoked: in this rollout."
+        "The task hierarchy of an individual: its genome. Root and the other composite subtasks\n\
+         (bold) choose among their children until they terminate; primitive subtasks act. The\n\
+         highlighted path leads from the root to the current action of the rollout. types: the\n\
+         state types in which a subtask can be active (Thesis Tables 4.2 and 4.3). T: the\n\
+         temperature of a composite's softmax; it falls whenever the subtask terminates, so that\n\
+         its choices become greedy. invoked: how often the rollout has invoked the subtask.\n\
+         Below stand the time steps of the scored trials; ! marks a truncated one."
     }
 }
 
-/// The area of the tree below the head, and how many of its lines are above it: the selected
-/// one is always on the screen.
+/// Returns the area of the tree below the head, and the number of lines scrolled out above it.
+///
+/// The selected line is always visible.
 fn place_of_tree(context: &ViewContext, tree: &Tree, area: Rect) -> (Rect, usize) {
-    let place = Rect {
-        y: area.y + area.height.min(1),
-        height: area.height.saturating_sub(1),
-        ..area
-    };
+    let place = shared::below(area, 1);
     let skipped = context
         .node_in(tree)
         .saturating_sub(usize::from(place.height / 2));

@@ -1,22 +1,23 @@
-//! What is told of each subtask of a hierarchy.
+//! The table of subtasks: the drawn tree with numbers beside it.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::{Paint, put, width};
+use crate::dashboard::views::shared::{self, mark_selected};
 use crate::evolution::RankedRecord;
 use crate::hierarchy::{Tree, draw};
 
-/// Columns of a temperature and of a count.
+/// Columns of a temperature and of an invocation count.
 const TEMPERATURE: u16 = 6;
 const INVOKED: u16 = 8;
 
-/// What is told of each node, and where.
+/// The lines of the tree, the numbers beside them, and where they stand.
 pub(super) struct Table {
     lines: Vec<String>,
-    /// Columns of state types, temperature and count; `None` where there is no room. What
-    /// never changes gives way first.
+    /// First columns of state types, temperature and count; `None` where they do not fit.
+    /// The state types, which never change, give way first.
     types: Option<u16>,
     temperature: Option<u16>,
     invoked: Option<u16>,
@@ -27,6 +28,7 @@ pub(super) struct Table {
 }
 
 impl Table {
+    /// Gathers what the table shows of an individual, for an area of some columns.
     pub(super) fn of(
         context: &ViewContext,
         individual: &RankedRecord,
@@ -39,44 +41,43 @@ impl Table {
         let types = first.saturating_add(context.catalogue().state_types.len().max(5) as u16 + 1);
         let all = types.saturating_add(TEMPERATURE + INVOKED) <= columns;
         let after = if all { types } else { first };
-        let on_stage = context
-            .player
-            .subject()
-            .is_some_and(|subject| subject.id == individual.id);
-        let rollout = context.player.rollout().filter(|_| on_stage);
+        let fitting = |column: u16, width| {
+            Some(column).filter(|column| column.saturating_add(width) <= columns)
+        };
+        let subject = context.player.subject();
+        let is_of_rollout = subject.is_some_and(|subject| subject.id == individual.id);
+        let rollout = context.player.rollout().filter(|_| is_of_rollout);
+        let (temperatures, visits, path) = rollout
+            .map(|rollout| {
+                let status = rollout.status();
+                (
+                    rollout.temperatures(),
+                    status.visits.clone(),
+                    status.path.clone(),
+                )
+            })
+            .unwrap_or_default();
         Self {
             lines,
             types: all.then_some(first),
-            temperature: Some(after).filter(|column| column.saturating_add(TEMPERATURE) <= columns),
-            invoked: Some(after.saturating_add(TEMPERATURE))
-                .filter(|column| column.saturating_add(INVOKED) <= columns),
-            temperatures: rollout
-                .map(|rollout| rollout.temperatures())
-                .unwrap_or_default(),
-            visits: rollout
-                .map(|rollout| rollout.status().visits.clone())
-                .unwrap_or_default(),
-            path: rollout
-                .map(|rollout| rollout.status().path.clone())
-                .unwrap_or_default(),
+            temperature: fitting(after, TEMPERATURE),
+            invoked: fitting(after.saturating_add(TEMPERATURE), INVOKED),
+            temperatures,
+            visits,
+            path,
             selected: context.node_in(tree),
         }
     }
 
-    /// Temperature and number of invocations of a node, as far as they are known.
+    /// Returns temperature and number of invocations of a node, as texts; empty where unknown.
     pub(super) fn numbers(&self, node: usize) -> [String; 2] {
         let temperature = self.temperatures.get(node).copied().flatten();
-        [
-            temperature
-                .map(|temperature| format!("{temperature:.3}"))
-                .unwrap_or_default(),
-            self.visits
-                .get(node)
-                .map(ToString::to_string)
-                .unwrap_or_default(),
-        ]
+        let temperature = temperature.map(|temperature| format!("{temperature:.3}"));
+        let visits = self.visits.get(node).map(ToString::to_string);
+        [temperature, visits].map(Option::unwrap_or_default)
     }
 
+    /// Draws the heads of the columns.
     pub(super) fn draw_head(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let dim = context.look.style(Paint::Dim);
         put(buffer, area, (2, 0), "subtask", dim);
@@ -91,6 +92,7 @@ impl Table {
         }
     }
 
+    /// Draws the line of a node.
     pub(super) fn draw_node(
         &self,
         context: &ViewContext,
@@ -102,68 +104,41 @@ impl Table {
     ) {
         let (look, catalogue) = (&context.look, context.catalogue());
         let subtask = catalogue.subtask(tree.subtask(node));
-        let lit = self.path.contains(&node);
-        let dim = look.style(Paint::Dim);
+        let is_active = self.path.contains(&node);
+        if node == self.selected {
+            mark_selected(look, shared::row(area, row), buffer);
+        }
+        let mut put =
+            |column, text: &str, paint| put(buffer, area, (column, row), text, look.style(paint));
+        if is_active {
+            put(1, look.signs.lit, Paint::Key);
+        }
         let line = self.lines.get(node).map_or("", |line| line);
         let branches = width(line).saturating_sub(width(&subtask.name));
         let branches: String = line.chars().take(branches).collect();
-        let is_selected = node == self.selected;
-        if is_selected {
-            let line = Rect {
-                y: area.y + row,
-                height: u16::from(row < area.height),
-                ..area
-            };
-            let style = look.style(Paint::Selected);
-            buffer.set_style(line.intersection(buffer.area), style);
-            put(buffer, line, (0, 0), look.signs.pointer, style);
-        }
-        if lit {
-            let style = look.style(Paint::Key);
-            put(buffer, area, (1, row), look.signs.lit, style);
-        }
-        let column = put(buffer, area, (2, row), &branches, look.style(Paint::Border));
-        let paint = match (lit, subtask.is_composite()) {
+        let column = put(2, &branches, Paint::Border);
+        let paint = match (is_active, subtask.is_composite()) {
             (true, _) => Paint::Active,
             (false, true) => Paint::Title,
             (false, false) => Paint::Text,
         };
-        put(
-            buffer,
-            area,
-            (column, row),
-            &subtask.name,
-            look.style(paint),
-        );
+        put(column, &subtask.name, paint);
         if let Some(column) = self.types {
-            let types =
-                catalogue
-                    .types()
-                    .map(|state_type| match subtask.active.contains(state_type) {
-                        true => state_type.number().to_string(),
-                        false => String::from(" "),
-                    });
-            let types: String = types.collect();
-            put(buffer, area, (column, row), &types, dim);
+            let types = catalogue.types().map(|state_type| {
+                if subtask.active.contains(state_type) {
+                    state_type.number().to_string()
+                } else {
+                    String::from(" ")
+                }
+            });
+            put(column, &types.collect::<String>(), Paint::Dim);
         }
         let [temperature, invoked] = self.numbers(node);
         if let Some(column) = self.temperature {
-            put(
-                buffer,
-                area,
-                (column, row),
-                &format!("{temperature:>5}"),
-                dim,
-            );
+            put(column, &format!("{temperature:>5}"), Paint::Dim);
         }
         if let Some(column) = self.invoked {
-            put(
-                buffer,
-                area,
-                (column, row),
-                &format!("{invoked:>8}"),
-                look.style(Paint::Text),
-            );
+            put(column, &format!("{invoked:>8}"), Paint::Text);
         }
     }
 }

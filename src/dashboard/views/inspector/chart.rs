@@ -1,37 +1,37 @@
-//! Curves over one quantity, sheets over two.
+//! Charts of learned values: curves over one input, sheets of digits over two.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::lines::{TINY, number};
-use crate::dashboard::look::{Canvas, Layer, Paint, put, shortened, width, wrapped};
+use crate::dashboard::look::{Canvas, Layer, Look, Paint, put, shortened, width, wrapped};
 use crate::lab::inspection::{Profile, Quantity};
 use crate::worlds::scene::Scale;
 
-/// Columns of the numbers beside a chart.
+/// Columns for the numbers beside a chart.
 const MARGIN: u16 = 9;
 
-/// The smallest and the largest value of a profile.
+/// Returns the smallest and the largest value of a profile.
 fn range(profile: &Profile) -> [f32; 2] {
     let values = profile.curves.iter().flat_map(|curve| &curve.values);
     let range = values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &value| {
         [low.min(value), high.max(value)]
     });
     match range {
-        // What differs by less is noise, not a curve.
+        // Smaller differences are noise, not a curve.
         [low, high] if high - low >= TINY => range,
         [low, _] if low.is_finite() => [low - 0.5, low + 0.5],
         _ => [0.0, 1.0],
     }
 }
 
-/// The sign of a curve: its number, so that curves are told apart without colour.
+/// Returns the number of a curve as a character: curves must be told apart without colours.
 fn sign(index: usize) -> char {
     char::from_digit(index as u32 + 1, 36).unwrap_or('?')
 }
 
-/// Curves over a quantity, each with its number on it.
+/// Draws curves over an input, each with its number on it.
 ///
 /// ```text
 ///   -0.100 │  ⣀⡠1⠤⠒⠉⠉
@@ -69,18 +69,32 @@ pub(super) fn curves(
         let points = values.iter().zip(&curve.values);
         let points: Vec<_> = points.map(|(&x, &y)| [x, f64::from(y)]).collect();
         for pair in points.windows(2) {
-            canvas.line(
-                pair[0],
-                pair[1],
-                Layer::Curve(index as u8),
-                Paint::series(index),
-            );
+            let layer = Layer::Curve(index as u8);
+            canvas.line(pair[0], pair[1], layer, Paint::series(index));
         }
     }
     canvas.finish(buffer);
+    number_curves(look, profile, values, (&canvas, chart), buffer);
+    let mut label = |at, text: &str| put(buffer, area, at, text, look.style(Paint::Dim));
+    label((0, 0), &format!("{:>8}", number(high)));
+    label((0, chart.height - 1), &format!("{:>8}", number(low)));
+    label((MARGIN, chart.height), &left.to_string());
+    let right = right.to_string();
+    let at = MARGIN + chart.width.saturating_sub(width(&right) as u16);
+    label((at, chart.height), &right);
+}
+
+/// Writes the numbers of the curves onto them.
+fn number_curves(
+    look: &Look,
+    profile: &Profile,
+    values: &[f64],
+    (canvas, chart): (&Canvas<'_>, Rect),
+    buffer: &mut Buffer,
+) {
     let count = profile.curves.len().max(1);
     for (index, curve) in profile.curves.iter().enumerate() {
-        // Staggered, so that labels of curves close to each other do not meet.
+        // Staggered, so that the numbers of close curves do not overlap.
         let places = (index..values.len()).step_by(2 * count);
         for place in places.skip(usize::from(values.len() > 4 * count)) {
             let at = [values[place], f64::from(curve.values[place])];
@@ -90,28 +104,9 @@ pub(super) fn curves(
             }
         }
     }
-    let dim = look.style(Paint::Dim);
-    put(buffer, area, (0, 0), &format!("{:>8}", number(high)), dim);
-    let last = chart.height.saturating_sub(1);
-    put(buffer, area, (0, last), &format!("{:>8}", number(low)), dim);
-    ends(context, [left, right], chart, buffer);
 }
 
-/// Writes the ends of a scale below a chart.
-fn ends(context: &ViewContext, [left, right]: [f64; 2], chart: Rect, buffer: &mut Buffer) {
-    let dim = context.look.style(Paint::Dim);
-    let line = Rect {
-        y: chart.bottom(),
-        height: 1,
-        ..chart
-    };
-    put(buffer, line, (0, 0), &left.to_string(), dim);
-    let right = right.to_string();
-    let at = chart.width.saturating_sub(width(&right) as u16);
-    put(buffer, line, (at, 0), &right, dim);
-}
-
-/// Writes which curve is which at the bottom of the area; returns the lines it took.
+/// Writes the labels of the curves at the bottom of the area; returns the rows used.
 fn legend(context: &ViewContext, profile: &Profile, area: Rect, buffer: &mut Buffer) -> u16 {
     let entries = profile.curves.iter().enumerate();
     let entries: Vec<_> = entries
@@ -137,8 +132,8 @@ fn legend(context: &ViewContext, profile: &Profile, area: Rect, buffer: &mut Buf
     rows
 }
 
-/// Sheets over two quantities: one with the number of the largest, and one for each curve
-/// in ten levels.
+/// Draws sheets over two inputs: one with the number of the largest curve, and one for each
+/// curve in ten levels.
 ///
 /// ```text
 ///  the largest                 1 ApproachNest
@@ -175,28 +170,16 @@ pub(super) fn sheets(
             width: (width + GAP - 1) as u16,
             height: (height + 1) as u16,
         };
-        sheet(
-            context,
-            profile,
-            which,
-            grain,
-            place.intersection(room),
-            buffer,
-        );
+        let place = place.intersection(room);
+        sheet(&context.look, profile, (which, grain), place, buffer);
     }
-    for (row, text) in (0..).zip(&legend) {
+    for (row, text) in (room.height..).zip(&legend) {
         let dim = context.look.style(Paint::Dim);
-        put(
-            buffer,
-            area,
-            (0, room.height.saturating_add(row)),
-            text,
-            dim,
-        );
+        put(buffer, area, (0, row), text, dim);
     }
 }
 
-/// What the digits of sheets mean, and what is across and down.
+/// Returns the legend of sheets: the range of the digits, and the inputs across and down.
 fn sheet_legend(profile: &Profile, down: &Scale, columns: usize) -> Vec<String> {
     let [low, high] = range(profile);
     let ends = |scale: &Scale| {
@@ -213,21 +196,20 @@ fn sheet_legend(profile: &Profile, down: &Scale, columns: usize) -> Vec<String> 
 
 /// Columns between sheets.
 const GAP: usize = 3;
-/// Least columns of a sheet: room for its title.
+/// Fewest columns of a sheet: room for its title.
 const TITLE: usize = 15;
 
 /// How finely a sheet is drawn.
 #[derive(Clone, Copy)]
 struct Grain {
-    /// Cells of the terminal for a value.
+    /// Columns per value.
     repeat: usize,
-    /// Every so many values of a row, and of a column, one is drawn.
+    /// Values per drawn value, along rows and along columns.
     stride: [usize; 2],
 }
 
 impl Grain {
-    /// The finest grain with which all sheets find room, and how many then stand side by
-    /// side.
+    /// Returns the finest grain at which all sheets fit, and the number of sheets side by side.
     fn fitting(profile: &Profile, down: &Scale, sheets: usize, room: Rect) -> (Self, usize) {
         const GRAINS: [(usize, [usize; 2]); 6] = [
             (4, [1, 1]),
@@ -237,23 +219,15 @@ impl Grain {
             (1, [2, 2]),
             (1, [4, 4]),
         ];
-        let mut last = (
-            Self {
-                repeat: 1,
-                stride: [1, 1],
-            },
-            1,
-        );
-        for (repeat, stride) in GRAINS {
+        let grains = GRAINS.map(|(repeat, stride)| {
             let grain = Self { repeat, stride };
             let across = (usize::from(room.width) + GAP) / (grain.width(profile) + GAP);
             let rows = (usize::from(room.height) + 1) / (grain.height(down) + 2);
-            last = (grain, across.max(1));
-            if across * rows >= sheets {
-                break;
-            }
-        }
-        last
+            (grain, across.max(1), across * rows >= sheets)
+        });
+        let fitting = grains.iter().find(|(.., fits)| *fits);
+        let &(grain, across, _) = fitting.unwrap_or(&grains[GRAINS.len() - 1]);
+        (grain, across)
     }
 
     fn width(self, profile: &Profile) -> usize {
@@ -265,16 +239,14 @@ impl Grain {
     }
 }
 
-/// One sheet: of a curve, or of which curve is largest.
+/// Draws one sheet: of one curve, or of the number of the largest curve.
 fn sheet(
-    context: &ViewContext,
+    look: &Look,
     profile: &Profile,
-    which: Option<usize>,
-    grain: Grain,
+    (which, grain): (Option<usize>, Grain),
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let look = &context.look;
     let [low, high] = range(profile);
     let curve = which.and_then(|index| profile.curves.get(index));
     let title = match (which, curve) {
@@ -312,7 +284,7 @@ fn sheet(
     }
 }
 
-/// The curve that is highest at a place, the first of equals.
+/// Returns the curve with the largest value at a place; the first of equals.
 pub(super) fn largest(profile: &Profile, place: usize) -> Option<usize> {
     let values = profile.curves.iter().map(|curve| curve.values.get(place));
     let best = values

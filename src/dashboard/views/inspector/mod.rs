@@ -1,4 +1,4 @@
-//! The inspector: the selected individual, taken apart.
+//! The inspector: the selected individual in detail.
 
 mod ancestry;
 mod chart;
@@ -9,28 +9,28 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Position, Rect};
 use ratatui::text::Line;
 
-use super::shared::nobody;
+use super::shared::{below, click_node, draw_no_individual, right_of, subject};
 use super::view::View;
+use crate::dashboard::context::Clicked;
 use crate::dashboard::context::Effect;
 use crate::dashboard::context::Subject;
 use crate::dashboard::context::ViewContext;
-use crate::dashboard::context::{Clicked, line_at};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, last_start, number};
 use crate::dashboard::look::{Paint, put, width};
 use crate::hierarchy::{draw, to_dot};
 use crate::lab::inspection::{Lineage, Profile, lineage};
 use crate::learning::SelectionProbabilities;
-use values::Shelf;
+use values::ProfileChoice;
 
-/// Size from which on all pages are shown at once.
+/// From this size on, all pages are shown at once.
 const ROOMY: (u16, u16) = (110, 32);
 
-/// Columns that a page needs beside the tree.
+/// Columns reserved for a page beside the tree.
 const PAGE: u16 = 34;
 
-/// The selected individual: its tree, the learned values of the subtask under the cursor,
-/// its selection probabilities, and where it comes from.
+/// The selected individual: its tree, and as pages beside it the learned values of the selected
+/// subtask, the selection probabilities, and the lineage.
 ///
 /// ```text
 ///  ╭ Inspector  individual 362, generation 26 ──────────────────────────╮
@@ -44,11 +44,11 @@ const PAGE: u16 = 34;
 pub(super) struct Inspector {
     page: Page,
     scroll: usize,
-    shelf: Shelf,
-    known: Option<Known>,
+    choice: ProfileChoice,
+    computed: Option<Computed>,
 }
 
-/// What is shown beside the tree.
+/// A page beside the tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Page {
     #[default]
@@ -74,8 +74,8 @@ impl Page {
     }
 }
 
-/// What has been worked out, and for whom.
-struct Known {
+/// What has been computed, and for which individual and node.
+struct Computed {
     subject: Subject,
     node: usize,
     profiles: Vec<Profile>,
@@ -86,66 +86,60 @@ struct Known {
 impl Inspector {
     fn tree_lines(&self, context: &ViewContext) -> Vec<Line<'static>> {
         let look = &context.look;
-        let Some(individual) = context.player.individual() else {
+        let Some(inspected) = context.player.individual() else {
             return Vec::new();
         };
-        let hierarchy = &individual.individual.hierarchy;
+        let hierarchy = &inspected.individual.hierarchy;
         let drawn = draw(hierarchy.tree(), context.catalogue(), look.signs.tree);
         let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 1;
-        let visits = context
-            .player
-            .rollout()
-            .map(|rollout| &rollout.status().visits);
+        let rollout = context.player.rollout();
+        let visits = rollout.map(|rollout| &rollout.status().visits);
         let selected = context.node_in(hierarchy.tree());
-        let values = drawn.into_iter().zip(hierarchy.values()).enumerate();
-        values
-            .map(|(node, (line, values))| {
-                let here = node == selected;
-                let (sign, paint) = match (here, values.is_some()) {
-                    (true, _) => (look.signs.pointer, Paint::Selected),
-                    (false, true) => (" ", Paint::Title),
-                    (false, false) => (" ", Paint::Text),
-                };
-                let pen = Pen::new(look).text(format!("{sign} "), paint);
-                let pen = pen.cell(&line, room, paint);
-                let tau = values.as_ref().map_or(String::new(), |values| {
-                    format!("{} {}", look.signs.tau, number(values.temperature))
-                });
-                let count = visits.and_then(|visits| visits.get(node));
-                let count = count.map_or(String::new(), |count| {
-                    format!("{count}{}", look.signs.times)
-                });
-                pen.cell(&tau, 7, Paint::Dim)
-                    .right(&count, 6, Paint::Text)
-                    .line()
-            })
-            .collect()
+        let lines = drawn.into_iter().zip(hierarchy.values()).enumerate();
+        let lines = lines.map(|(node, (line, values))| {
+            let (sign, paint) = match (node == selected, values.is_some()) {
+                (true, _) => (look.signs.pointer, Paint::Selected),
+                (false, true) => (" ", Paint::Title),
+                (false, false) => (" ", Paint::Text),
+            };
+            let tau = values.as_ref().map(|values| number(values.temperature));
+            let tau = tau.map_or(String::new(), |tau| format!("{} {tau}", look.signs.tau));
+            let count = visits.and_then(|visits| visits.get(node));
+            let count = count.map(|count| format!("{count}{}", look.signs.times));
+            Pen::new(look)
+                .text(format!("{sign} "), paint)
+                .cell(&line, room, paint)
+                .cell(&tau, 7, Paint::Dim)
+                .right(&count.unwrap_or_default(), 6, Paint::Text)
+                .line()
+        });
+        lines.collect()
     }
 
     fn page_lines(&self, context: &ViewContext, page: Page, columns: usize) -> Vec<Line<'static>> {
-        let Some(known) = &self.known else {
+        let Some(computed) = &self.computed else {
             return Vec::new();
         };
         match page {
             Page::Values => Vec::new(),
-            Page::Selection => selection::lines(context, &known.selection, columns),
-            Page::Lineage => match &known.lineage {
+            Page::Selection => selection::lines(context, &computed.selection, columns),
+            Page::Lineage => match &computed.lineage {
                 Some(lineage) => ancestry::lines(context, lineage, columns),
                 None => Vec::new(),
             },
         }
     }
 
-    /// Draws a page below a line with its title.
+    /// Draws a page, leaving the first row of the area for its title.
     fn draw_page(&self, context: &ViewContext, page: Page, area: Rect, buffer: &mut Buffer) {
-        let Some(known) = &self.known else { return };
-        let inside = Rect {
-            y: area.y + area.height.min(1),
-            height: area.height.saturating_sub(1),
-            ..area
+        let Some(computed) = &self.computed else {
+            return;
         };
+        let inside = below(area, 1);
         match page {
-            Page::Values => self.shelf.draw(context, &known.profiles, inside, buffer),
+            Page::Values => self
+                .choice
+                .draw(context, &computed.profiles, inside, buffer),
             _ => {
                 let lines = self.page_lines(context, page, inside.width.into());
                 let scroll = if page == self.page { self.scroll } else { 0 };
@@ -154,7 +148,7 @@ impl Inspector {
         }
     }
 
-    /// The area of the tree, and how many of its lines are above it.
+    /// Returns the area of the tree, and the number of lines scrolled out above it.
     fn place_of_tree(&self, context: &ViewContext, area: Rect) -> (Rect, usize) {
         let lines = self.tree_lines(context);
         let count = |lines: usize| u16::try_from(lines).unwrap_or(u16::MAX);
@@ -170,7 +164,7 @@ impl Inspector {
         (left, skipped.min(last_start(lines.len(), left.height)))
     }
 
-    /// Everything at once.
+    /// Draws the tree and all pages.
     fn draw_roomy(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let [left, right] = columns(area, 2 * area.width / 5);
         let (above, _) = self.place_of_tree(context, area);
@@ -187,7 +181,7 @@ impl Inspector {
         }
     }
 
-    /// The tree and one page.
+    /// Draws the tree and one page.
     fn draw_narrow(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let lines = self.tree_lines(context);
         let (left, skipped) = self.place_of_tree(context, area);
@@ -195,11 +189,7 @@ impl Inspector {
         draw_lines(&context.look, &lines, skipped, left, buffer);
         let mut column = 0;
         for page in Page::ALL {
-            let area = Rect {
-                x: right.x + column,
-                width: right.width.saturating_sub(column),
-                ..right
-            };
+            let area = right_of(right, column);
             column += title(context, page, page == self.page, area, buffer) + 1;
         }
         self.draw_page(context, self.page, right, buffer);
@@ -210,7 +200,7 @@ impl Inspector {
     }
 }
 
-/// Writes the title of a page; returns its columns.
+/// Writes the title of a page; returns the columns used.
 fn title(
     context: &ViewContext,
     page: Page,
@@ -218,30 +208,27 @@ fn title(
     area: Rect,
     buffer: &mut Buffer,
 ) -> u16 {
-    let (sign, paint) = match has_focus {
-        true => (context.look.signs.pointer, Paint::Focus),
-        false => (" ", Paint::Title),
+    let (sign, paint) = if has_focus {
+        (context.look.signs.pointer, Paint::Focus)
+    } else {
+        (" ", Paint::Title)
     };
     let text = format!("{sign}{}", page.title());
     put(buffer, area, (0, 0), &text, context.look.style(paint))
 }
 
-/// Two columns with a gap, the left one so wide.
+/// Splits an area into two columns with a gap; `left` is the width of the first.
 fn columns(area: Rect, left: u16) -> [Rect; 2] {
-    let columns = [
-        Constraint::Length(left.min(area.width)),
-        Constraint::Fill(1),
-    ];
-    Layout::horizontal(columns).spacing(2).areas(area)
+    let left = Constraint::Length(left.min(area.width));
+    let columns = Layout::horizontal([left, Constraint::Fill(1)]);
+    columns.spacing(2).areas(area)
 }
 
-/// Two rows with a gap, the upper one so high.
+/// Splits an area into two rows with a gap; `above` is the height of the first.
 fn rows(area: Rect, above: u16) -> [Rect; 2] {
-    let rows = [
-        Constraint::Length(above.min(area.height)),
-        Constraint::Fill(1),
-    ];
-    Layout::vertical(rows).spacing(1).areas(area)
+    let above = Constraint::Length(above.min(area.height));
+    let rows = Layout::vertical([above, Constraint::Fill(1)]);
+    rows.spacing(1).areas(area)
 }
 
 impl View for Inspector {
@@ -258,13 +245,12 @@ impl View for Inspector {
     }
 
     fn caption(&self, context: &ViewContext) -> String {
-        let subject = context.player.subject();
-        subject.map_or(String::new(), |subject| subject.to_string())
+        subject(context)
     }
 
     fn draw(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
-        if self.known.is_none() {
-            nobody(context, area, buffer);
+        if self.computed.is_none() {
+            draw_no_individual(context, area, buffer);
         } else if Self::is_roomy(area) {
             self.draw_roomy(context, area, buffer);
         } else {
@@ -283,11 +269,11 @@ impl View for Inspector {
 
     fn can(&self, context: &ViewContext, action: Action) -> bool {
         let nodes = context.player.tree().map_or(0, |tree| tree.nodes().len());
-        let known = self.known.is_some();
+        let computed = self.computed.is_some();
         match action {
             Action::Down => nodes > 1,
-            Action::NextPanel => known,
-            Action::Mode => known && self.shelf.has_quantities(),
+            Action::NextPanel => computed,
+            Action::Mode => computed && self.choice.has_quantities(),
             _ => true,
         }
     }
@@ -306,82 +292,76 @@ impl View for Inspector {
             Action::Down => context.node = (context.node + 1).min(nodes - 1),
             Action::Top => context.node = 0,
             Action::Bottom => context.node = nodes - 1,
-            Action::Mode => self.shelf.next_quantity(),
-            Action::Left => self.shelf.turn(-1),
-            Action::Right => self.shelf.turn(1),
+            Action::Mode => self.choice.next_quantity(),
+            Action::Left => self.choice.turn(-1),
+            Action::Right => self.choice.turn(1),
             _ => return None,
         }
         Some(Vec::new())
     }
 
     fn click(&mut self, context: &mut ViewContext, area: Rect, at: Position) -> Clicked {
-        let (place, skipped) = self.place_of_tree(context, area);
-        let Some(tree) = context.player.tree() else {
-            return Clicked::Nothing;
-        };
-        let node = line_at(at, place, 0).map(|line| line + skipped);
-        let node = node.filter(|node| *node < tree.nodes().len());
-        Clicked::on(node, context.node_in(tree), |node| context.node = node)
+        let nodes = context.player.tree().map_or(0, |tree| tree.nodes().len());
+        click_node(context, nodes, self.place_of_tree(context, area), at)
     }
 
     fn prepare(&mut self, context: &ViewContext) {
-        let Some((individual, subject)) = context.player.individual().zip(context.player.subject())
+        let Some((inspected, subject)) = context.player.individual().zip(context.player.subject())
         else {
-            self.known = None;
+            self.computed = None;
             return;
         };
-        let node = context.node_in(individual.individual.hierarchy.tree());
-        let lines = self
-            .page_lines(context, self.page, context.size.0.into())
-            .len();
-        self.scroll = self.scroll.min(last_start(lines, 3));
-        let same = self.known.as_ref().filter(|known| known.subject == subject);
-        if same.is_some_and(|known| known.node == node) {
+        let node = context.node_in(inspected.individual.hierarchy.tree());
+        let lines = self.page_lines(context, self.page, context.size.0.into());
+        self.scroll = self.scroll.min(last_start(lines.len(), 3));
+        let current = self.computed.as_ref();
+        if current.is_some_and(|of| of.subject == subject && of.node == node) {
             return;
         }
-        let profiles = context.experiment.profiles(individual, node);
-        self.shelf.fit(&profiles);
-        if let Some(known) = self.known.as_mut().filter(|known| known.subject == subject) {
-            known.profiles = profiles;
-            known.node = node;
+        let profiles = context.experiment.profiles(inspected, node);
+        self.choice.fit(&profiles);
+        if let Some(computed) = self.computed.as_mut().filter(|of| of.subject == subject) {
+            computed.profiles = profiles;
+            computed.node = node;
             return;
         }
         let records = context.history().generations();
         let until = records
             .iter()
             .take_while(|record| record.generation <= subject.generation);
-        self.known = Some(Known {
+        self.computed = Some(Computed {
             subject,
             node,
             profiles,
-            selection: context.experiment.selection(individual),
+            selection: context.experiment.selection(inspected),
             lineage: lineage(until.map(|record| &**record), subject.id),
         });
     }
 
     fn csv(&self, context: &ViewContext) -> Option<String> {
-        let known = self.known.as_ref()?;
+        let computed = self.computed.as_ref()?;
         Some(match self.page {
-            Page::Values => values::csv(&known.profiles),
-            Page::Selection => selection::csv(context, &known.selection),
-            Page::Lineage => ancestry::csv(known.lineage.as_ref()?),
+            Page::Values => values::csv(&computed.profiles),
+            Page::Selection => selection::csv(context, &computed.selection),
+            Page::Lineage => ancestry::csv(computed.lineage.as_ref()?),
         })
     }
 
     fn dot(&self, context: &ViewContext) -> Option<String> {
         match self.page {
-            Page::Lineage => Some(ancestry::dot(self.known.as_ref()?.lineage.as_ref()?)),
+            Page::Lineage => Some(ancestry::dot(self.computed.as_ref()?.lineage.as_ref()?)),
             _ => Some(to_dot(context.player.tree()?, context.catalogue())),
         }
     }
 
     fn help_text(&self) -> &'static str {
-        "An individual, taken apart. Move along its tree, beside it the temperatures that it came\n\
-         with and how often each subtask was invoked in the rollout. Values: what the subtask under the\n\
-         cursor has learned - Q of a primitive subtask's actions (Thesis Figure 4.3); C~, C, V\n\
-         of a composite one's children, and C~+V, which it chooses by - over the inputs it\n\
-         looks at. Selection: in which primitive subtask its policy ends, for each state type.\n\
-         Lineage: how it was made, back to the start: inherited from whom, and what was reset,\n\
-         because it stood above the crossover site (Thesis 3.2)."
+        "An individual in detail. Beside its tree stand the temperatures that it starts the\n\
+         rollout with, and how often the rollout has invoked each subtask. Values: what the\n\
+         selected subtask has learned, over the inputs that it observes: Q of the actions of a\n\
+         primitive subtask (Thesis Figure 4.3); C~, C and V of the children of a composite\n\
+         subtask, and C~+V, by which it chooses. Selection: the primitive subtasks that the\n\
+         policy ends in, for each state type. Lineage: how the individual was made, back to the\n\
+         first generation: what it inherited from whom, and what was reset because it stood\n\
+         above the crossover site (Thesis 3.2)."
     }
 }

@@ -1,18 +1,15 @@
-//! Selection probabilities of one individual, beside the mean of the better half.
-
-use std::fmt::Write;
+//! The selection page: selection probabilities, beside the mean of the better half.
 
 use ratatui::text::Line;
 
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::lines::{Pen, percent};
 use crate::dashboard::look::{Paint, shortened, wrapped};
+use crate::dashboard::views::policy::{SMALL, probability, title};
+use crate::dashboard::views::shared::{csv_line, line};
 use crate::learning::SelectionProbabilities;
 
-/// Least share that is listed.
-const LEAST: f64 = 0.005;
-
-/// For each state type the primitive subtasks that the policy ends in.
+/// Lists for each state type the primitive subtasks that the policy ends in.
 ///
 /// ```text
 ///  1 empty-handed, no battery visible
@@ -31,18 +28,19 @@ pub(super) fn lines(
     for (index, shares) in selection.iter().enumerate() {
         let about = catalogue.state_types.get(index);
         let about = about.map_or("", |info| &info.description);
-        let title = format!("{} {about}", index + 1);
-        let title = wrapped(&title, columns, "  ").into_iter();
-        lines.extend(title.map(|line| Pen::new(look).text(line, Paint::Title).line()));
+        let title = wrapped(&title(index, about), columns, "  ").into_iter();
+        lines.extend(title.map(|line| self::line(look, line, Paint::Title)));
         let Some(shares) = shares else {
-            let text = "  no such state in this arena";
-            lines.push(Pen::new(look).text(text, Paint::Dim).line());
+            let text = "  does not occur in this arena";
+            lines.push(line(look, text, Paint::Dim));
             continue;
         };
         for (place, (primitive, &share)) in catalogue.primitives().zip(shares).enumerate() {
             let name = primitive.name(catalogue);
-            let mean = mean(context, index, name);
-            if share < LEAST && mean.is_none_or(|mean| mean < LEAST) {
+            let mean = context
+                .shown()
+                .and_then(|shown| probability(shown, index, name));
+            if share < SMALL && mean.is_none_or(|mean| mean < SMALL) {
                 continue;
             }
             let pen = Pen::new(look)
@@ -50,11 +48,11 @@ pub(super) fn lines(
                 .text(shortened(name, names, look.signs), Paint::Text)
                 .to(2 + names)
                 .right(&percent(share), 6, Paint::Title);
-            let pen = match bar {
-                0 => pen,
-                bar => pen
-                    .text("  ", Paint::Text)
-                    .bar(share, bar, Paint::series(place)),
+            let pen = if bar > 0 {
+                let gap = pen.text("  ", Paint::Text);
+                gap.bar(share, bar, Paint::series(place))
+            } else {
+                pen
             };
             let mean = mean.map_or(String::new(), |mean| format!("  mean {}", percent(mean)));
             lines.push(pen.text(mean, Paint::Dim).line());
@@ -63,13 +61,7 @@ pub(super) fn lines(
     lines
 }
 
-/// The mean of the better half of the generation shown.
-fn mean(context: &ViewContext, state_type: usize, primitive: &str) -> Option<f64> {
-    let of = context.shown()?.selection_probabilities.get(state_type)?;
-    of.as_ref()?.get(primitive).copied()
-}
-
-/// The same as a table.
+/// Writes the selection probabilities as CSV.
 pub(super) fn csv(context: &ViewContext, selection: &SelectionProbabilities) -> String {
     let catalogue = context.catalogue();
     let mut csv = String::from("state_type,primitive,probability\n");
@@ -77,8 +69,7 @@ pub(super) fn csv(context: &ViewContext, selection: &SelectionProbabilities) -> 
         let shares = shares.iter().flatten();
         for (primitive, share) in catalogue.primitives().zip(shares) {
             let name = primitive.name(catalogue);
-            // Writing to a string cannot fail.
-            let _ = writeln!(csv, "{},{name},{share}", index + 1);
+            csv_line(&mut csv, &[&(index + 1), &name, share]);
         }
     }
     csv

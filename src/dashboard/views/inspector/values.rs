@@ -1,6 +1,4 @@
-//! Learned values of a subtask, as tables, curves and sheets.
-
-use std::fmt::Write;
+//! The values page: what a subtask has learned, as a table, curves or sheets.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -11,20 +9,20 @@ use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, decimals, draw_lines, fixed};
 use crate::dashboard::look::{Paint, put, shortened, wrapped};
+use crate::dashboard::views::shared::{below, csv_line, keys};
 use crate::lab::inspection::{Profile, Quantity};
 use crate::worlds::scene::Scale;
 
-/// Which of the profiles is looked at: a quantity, and a place among the profiles that
-/// show it.
+/// The profile that is shown: a quantity, and a place among the profiles of that quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Shelf {
+pub(super) struct ProfileChoice {
     quantity: usize,
     place: usize,
     quantities: usize,
     places: usize,
 }
 
-/// The quantities that there are, in order.
+/// Lists the quantities of some profiles, in order.
 fn quantities(profiles: &[Profile]) -> Vec<Quantity> {
     let mut quantities = Vec::new();
     for profile in profiles {
@@ -35,8 +33,8 @@ fn quantities(profiles: &[Profile]) -> Vec<Quantity> {
     quantities
 }
 
-impl Shelf {
-    /// Stays where it is, as far as that is among these profiles.
+impl ProfileChoice {
+    /// Adapts to new profiles, keeping quantity and place where they exist.
     pub(super) fn fit(&mut self, profiles: &[Profile]) {
         self.quantities = quantities(profiles).len().max(1);
         self.quantity = self.quantity.min(self.quantities - 1);
@@ -44,17 +42,17 @@ impl Shelf {
         self.place = self.place.min(self.places - 1);
     }
 
-    /// Whether there is more than one quantity.
+    /// Returns whether there is more than one quantity.
     pub(super) fn has_quantities(&self) -> bool {
         self.quantities > 1
     }
 
-    /// Goes on to the next quantity.
+    /// Turns to the next quantity.
     pub(super) fn next_quantity(&mut self) {
         self.quantity = (self.quantity + 1) % self.quantities.max(1);
     }
 
-    /// Goes on to the next state type and inputs, or back.
+    /// Turns to the next place (`1`) or to the one before (`-1`): a state type with its inputs.
     pub(super) fn turn(&mut self, by: isize) {
         let places = self.places.max(1) as isize;
         self.place = (self.place as isize + by).rem_euclid(places) as usize;
@@ -62,13 +60,11 @@ impl Shelf {
 
     fn chosen<'p>(&self, profiles: &'p [Profile]) -> Option<&'p Profile> {
         let quantity = *quantities(profiles).get(self.quantity)?;
-        let mut showing = profiles
-            .iter()
-            .filter(|profile| profile.quantity == quantity);
+        let mut showing = profiles.iter().filter(|of| of.quantity == quantity);
         showing.nth(self.place)
     }
 
-    /// Draws the profile that is looked at.
+    /// Draws the profile that is shown.
     pub(super) fn draw(
         &self,
         context: &ViewContext,
@@ -78,7 +74,7 @@ impl Shelf {
     ) {
         let look = &context.look;
         let Some(profile) = self.chosen(profiles) else {
-            let text = "this subtask can act in no state";
+            let text = "this subtask can act in no state type";
             put(buffer, area, (0, 0), text, look.style(Paint::Dim));
             return;
         };
@@ -86,12 +82,7 @@ impl Shelf {
         for (row, line) in (0..area.height).zip(&title) {
             put(buffer, area, (0, row), line, look.style(Paint::Dim));
         }
-        let head = (title.len() as u16).min(area.height);
-        let inside = Rect {
-            y: area.y + head,
-            height: area.height - head,
-            ..area
-        };
+        let inside = below(area, title.len() as u16);
         match (&profile.down, &profile.across) {
             (Some(down), _) => chart::sheets(context, profile, down, inside, buffer),
             (None, Scale::Quantity { values, .. }) => {
@@ -110,39 +101,33 @@ impl Shelf {
             None => profile.across.name().to_owned(),
         };
         let over = over.replace('_', " ");
-        let place = match self.places {
-            1 => String::new(),
-            places => format!("{}/{places} {}  ", self.place + 1, keys(context)),
-        };
-        let what = words(profile.quantity);
-        match profile.quantity {
-            Quantity::ActionValue => format!("{place}{what} over {over}"),
-            _ => {
-                let number = profile.state_type.number();
-                format!("{place}state type {number}: {what} over {over}")
-            }
+        let mut title = String::new();
+        if self.places > 1 {
+            let (number, keys) = (self.place + 1, keys(context, Action::Left));
+            title += &format!("{number}/{} {keys}  ", self.places);
         }
+        if profile.quantity != Quantity::ActionValue {
+            title += &format!("state type {}: ", profile.state_type.number());
+        }
+        let (quantity, _) = names(profile.quantity);
+        title + &format!("{quantity} over {over}")
     }
 }
 
-/// The keys that turn to another place.
-fn keys(context: &ViewContext) -> String {
-    let hint = context.keys.hint(Action::Left, context.look.signs);
-    hint.map_or(String::new(), |(keys, _)| keys)
-}
-
-fn words(quantity: Quantity) -> &'static str {
+/// Returns the names of a quantity: on the screen, and in CSV.
+fn names(quantity: Quantity) -> (&'static str, &'static str) {
     match quantity {
-        Quantity::ActionValue => "Q of its actions",
-        Quantity::Preference => "C~+V",
-        Quantity::CTilde => "C~ of its children",
-        Quantity::C => "C of its children",
-        Quantity::Value => "V of its children",
-        Quantity::Probability => "probability of its children",
+        Quantity::ActionValue => ("Q of its actions", "q"),
+        Quantity::Preference => ("C~+V", "c_tilde_plus_v"),
+        Quantity::CTilde => ("C~ of its children", "c_tilde"),
+        Quantity::C => ("C of its children", "c"),
+        Quantity::Value => ("V of its children", "v"),
+        Quantity::Probability => ("probability of its children", "probability"),
     }
 }
 
-/// One line a case, one column a curve; the largest of a line is pointed at.
+/// Returns a table with a line for each case and a column for each curve; a pointer marks the
+/// largest value of a line.
 fn table(
     context: &ViewContext,
     profile: &Profile,
@@ -163,15 +148,12 @@ fn table(
         let mut pen = Pen::new(look).cell(text, label, Paint::Text);
         let best = largest(profile, row);
         for (index, curve) in curves.iter().enumerate() {
-            let text = curve
-                .values
-                .get(row)
-                .copied()
-                .map(|value| fixed(value, digits))
-                .unwrap_or_default();
-            pen = match Some(index) == best && curves.len() > 1 {
-                true => pen.right(&format!("{}{text}", look.signs.pointer), each, Paint::Best),
-                false => pen.right(&text, each, Paint::Text),
+            let value = curve.values.get(row);
+            let text = value.map_or(String::new(), |value| fixed(*value, digits));
+            pen = if Some(index) == best && curves.len() > 1 {
+                pen.right(&format!("{}{text}", look.signs.pointer), each, Paint::Best)
+            } else {
+                pen.right(&text, each, Paint::Text)
             };
         }
         pen.line()
@@ -179,44 +161,29 @@ fn table(
     std::iter::once(head.line()).chain(rows).collect()
 }
 
-/// All profiles as a table.
+/// Writes all profiles as CSV.
 pub(super) fn csv(profiles: &[Profile]) -> String {
     let mut csv = String::from("quantity,state_type,across,at,down,at_down,of,value\n");
-    let quoted = |text: &str| match text.contains(',') {
-        true => format!("\"{text}\""),
-        false => text.to_owned(),
-    };
     for profile in profiles {
         let width = profile.across.len().max(1);
         for curve in &profile.curves {
             for (place, value) in curve.values.iter().enumerate() {
                 let down = profile.down.as_ref();
-                // Writing to a string cannot fail.
-                let _ = writeln!(
-                    csv,
-                    "{},{},{},{},{},{},{},{value}",
-                    name(profile.quantity),
-                    profile.state_type.number(),
-                    profile.across.name(),
-                    quoted(&profile.across.label(place % width)),
-                    down.map_or("", Scale::name),
-                    down.map_or(String::new(), |down| quoted(&down.label(place / width))),
-                    quoted(&curve.label)
+                csv_line(
+                    &mut csv,
+                    &[
+                        &names(profile.quantity).1,
+                        &profile.state_type.number(),
+                        &profile.across.name(),
+                        &profile.across.label(place % width),
+                        &down.map_or("", Scale::name),
+                        &down.map_or(String::new(), |down| down.label(place / width)),
+                        &curve.label,
+                        value,
+                    ],
                 );
             }
         }
     }
     csv
-}
-
-/// The name of a quantity in tables.
-fn name(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::ActionValue => "q",
-        Quantity::Preference => "c_tilde_plus_v",
-        Quantity::CTilde => "c_tilde",
-        Quantity::C => "c",
-        Quantity::Value => "v",
-        Quantity::Probability => "probability",
-    }
 }

@@ -1,7 +1,7 @@
-//! The trial stepper: one time step, taken apart.
+//! The trial stepper: one time step in detail.
 
-mod before;
 mod csv;
+mod earlier;
 mod outcome;
 mod readings;
 mod stack;
@@ -10,13 +10,13 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::shared::{nobody, pace};
+use super::shared::{below, draw_no_individual, draw_note, keys, pace, right_of};
 use super::view::View;
 use crate::dashboard::context::Effect;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, last_start};
-use crate::dashboard::look::{Look, Paint, fitted, put};
+use crate::dashboard::look::{Look, Paint};
 use crate::dashboard::scene::{Scene, draw_scene};
 use crate::hierarchy::{Tree, to_dot};
 use crate::lab::inspection::StepTrace;
@@ -30,35 +30,35 @@ use crate::worlds::{Catalogue, Kind};
 ///  │ ⡇   ▮   ⡇    ⢸  Root  chooses by softmax, τ 0.812                         │
 ///  │ ⡇  ↗·   ⡇ ⌂  ⢸  ▸ FindBattery   -3.612  -3.212  -0.400  -0.400  88 % ━━━ │
 ///  │ ⣇⣀⣀⣀⣀⣀⣀⣀⣸    Wander        -5.401  -0.300  -5.101  -5.101  12 % ━   │
-///  │ readings   after ─ what came of it ───────────────────────────────────── │
+///  │ readings   after ─ outcome ───────────────────────────────────────────── │
 ///  │ proximity    350  state type 1 → 2   reward -0.120                         │
 ///  ╰──────────────────────────────────────────────────────────────────────────╯
 /// ```
 #[derive(Default)]
 pub(super) struct Stepper {
-    /// How many recorded steps the person has gone back.
+    /// How many recorded steps back the step shown is.
     back: usize,
-    /// First line of the stack that is shown.
+    /// Lines of the stack scrolled out at the top.
     scroll: usize,
-    /// The step that was last when the view was prepared.
+    /// Trial and number of the latest step when the view was last prepared.
     last: Option<(u64, u32)>,
 }
 
-/// What a time step is explained with.
-struct Shown<'s> {
+/// The time step shown, with what its explanation needs.
+struct ShownStep<'s> {
     trace: &'s StepTrace,
     tree: &'s Tree,
     catalogue: &'s Catalogue,
     look: &'s Look,
 }
 
-impl Shown<'_> {
-    /// The subtask of a node.
+impl ShownStep<'_> {
+    /// Returns the name of a node's subtask.
     fn name(&self, node: usize) -> &str {
         self.tree.subtask(node).name(self.catalogue)
     }
 
-    /// The actions of a primitive node.
+    /// Returns the actions of a primitive node.
     fn actions(&self, node: usize) -> &[String] {
         match &self.catalogue.subtask(self.tree.subtask(node)).kind {
             Kind::Primitive { actions } => actions,
@@ -67,57 +67,50 @@ impl Shown<'_> {
     }
 }
 
-/// Says how a rollout that is halted before its first time step goes on.
-fn no_step_yet(context: &ViewContext, area: Rect, buffer: &mut Buffer) {
-    let look = &context.look;
-    let key = context.keys.hint(Action::StepRollout, look.signs);
-    let text = match key {
-        Some((key, _)) => format!("no time step of this rollout yet: {key} takes one"),
-        None => String::from("no time step of this rollout yet"),
+/// Explains how to take the first time step of a halted rollout.
+fn draw_no_step(context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+    let key = keys(context, Action::StepRollout);
+    let note = if key.is_empty() {
+        String::from("this rollout has no time step yet")
+    } else {
+        format!("this rollout has no time step yet: {key} takes one")
     };
-    let text = fitted(&text, usize::from(area.width.saturating_sub(1)), look.signs);
-    put(buffer, area, (1, 0), &text, look.style(Paint::Dim));
+    draw_note(context, &note, area, buffer);
 }
 
-/// How much is said.
+/// How much of a time step is shown.
 #[derive(Clone, Copy)]
 struct Detail {
-    /// The choices of nodes that did not choose in this step.
+    /// The children of nodes that did not choose in this step.
     standing: bool,
     /// The actions that were not chosen.
     actions: bool,
-    /// Updates of a lesson that are listed before the last.
+    /// Updates per node that are listed before the last one.
     updates: usize,
 }
 
-/// Least rows that are used for the steps before.
-const LEAST_BEFORE: usize = 3;
+impl Detail {
+    const fn new(standing: bool, actions: bool, updates: usize) -> Self {
+        Self {
+            standing,
+            actions,
+            updates,
+        }
+    }
+}
 
-/// From everything to what is needed; the first that fits is shown.
+/// From full detail to the minimum; the first that fits is shown.
 const DETAILS: [Detail; 4] = [
-    Detail {
-        standing: true,
-        actions: true,
-        updates: 6,
-    },
-    Detail {
-        standing: true,
-        actions: true,
-        updates: 1,
-    },
-    Detail {
-        standing: false,
-        actions: true,
-        updates: 1,
-    },
-    Detail {
-        standing: false,
-        actions: false,
-        updates: 1,
-    },
+    Detail::new(true, true, 6),
+    Detail::new(true, true, 1),
+    Detail::new(false, true, 1),
+    Detail::new(false, false, 1),
 ];
 
-/// Where things are.
+/// Fewest rows that are used for the earlier steps.
+const EARLIER_ROWS: usize = 3;
+
+/// The areas of the view.
 struct Areas {
     arena: Rect,
     readings: Rect,
@@ -127,8 +120,8 @@ struct Areas {
 impl Areas {
     fn of(area: Rect, readings: u16) -> Self {
         let room = area.height.saturating_sub(readings);
-        // Cells are about twice as high as wide: a square arena.
-        // Names and numbers need their columns first.
+        // Terminal cells are about twice as high as wide, so this makes the arena square,
+        // unless names and numbers need its columns.
         let widest = match area.width {
             width if width < 100 => width / 3,
             width => width * 2 / 5,
@@ -139,17 +132,15 @@ impl Areas {
             height: room.min(left.div_ceil(2)),
             ..area
         };
-        let readings = Rect {
-            y: arena.bottom(),
-            height: area.bottom().saturating_sub(arena.bottom()),
-            ..arena
-        };
+        let readings = below(
+            Rect {
+                width: left,
+                ..area
+            },
+            arena.height,
+        );
         let gap = 1 + u16::from(area.width >= 100);
-        let stack = Rect {
-            x: arena.right() + gap,
-            width: area.width.saturating_sub(left + gap),
-            ..area
-        };
+        let stack = right_of(area, left + gap);
         Self {
             arena,
             readings,
@@ -159,8 +150,8 @@ impl Areas {
 }
 
 impl Stepper {
-    fn shown<'d>(&self, context: &'d ViewContext) -> Option<Shown<'d>> {
-        Some(Shown {
+    fn shown<'d>(&self, context: &'d ViewContext) -> Option<ShownStep<'d>> {
+        Some(ShownStep {
             trace: context.player.trace(self.back)?,
             tree: context.player.tree()?,
             catalogue: context.catalogue(),
@@ -168,34 +159,38 @@ impl Stepper {
         })
     }
 
-    /// The call stack, what came of it, and what was before, in as much detail as fits.
-    fn lines(&self, context: &ViewContext, shown: &Shown<'_>, area: Rect) -> Vec<Line<'static>> {
+    /// Returns the call stack, its outcome and the earlier steps, in as much detail as fits.
+    fn lines(
+        &self,
+        context: &ViewContext,
+        shown: &ShownStep<'_>,
+        area: Rect,
+    ) -> Vec<Line<'static>> {
         let columns = usize::from(area.width);
         let all = |detail| {
             let mut lines = stack::lines(shown, columns, detail);
-            lines.push(rule(shown.look, "what came of it", columns));
+            lines.push(rule(shown.look, "outcome", columns));
             lines.extend(outcome::lines(shown, columns, detail));
             lines
         };
         let rows = usize::from(area.height);
-        let mut details = DETAILS.iter().copied().map(all);
-        let mut lines = details.next().unwrap_or_default();
-        while lines.len() > rows {
-            match details.next() {
-                Some(shorter) => lines = shorter,
-                None => return lines,
+        let mut lines = Vec::new();
+        for detail in DETAILS {
+            lines = all(detail);
+            if lines.len() <= rows {
+                break;
             }
         }
-        let room = rows - lines.len();
-        if room >= LEAST_BEFORE && context.player.recorded_steps() > self.back + 1 {
-            lines.push(rule(shown.look, "the steps before", columns));
-            lines.extend(before::lines(context, shown, self.back, room - 1));
+        let room = rows.saturating_sub(lines.len());
+        if room >= EARLIER_ROWS && context.player.recorded_steps() > self.back + 1 {
+            lines.push(rule(shown.look, "earlier steps", columns));
+            lines.extend(earlier::lines(context, shown, self.back, room - 1));
         }
         lines
     }
 }
 
-/// A line across with a title in it.
+/// Returns a horizontal line with a title in it.
 fn rule(look: &Look, title: &str, columns: usize) -> Line<'static> {
     let sign = look.signs.border.horizontal_top;
     let pen = Pen::new(look)
@@ -220,11 +215,11 @@ impl View for Stepper {
 
     fn caption(&self, context: &ViewContext) -> String {
         let separator = context.look.signs.separator;
-        let Some((rollout, subject)) = context.player.rollout().zip(context.player.subject())
-        else {
+        let player = &context.player;
+        let Some((rollout, subject)) = player.rollout().zip(player.subject()) else {
             return String::new();
         };
-        let Some(trace) = context.player.trace(self.back) else {
+        let Some(trace) = player.trace(self.back) else {
             let (trial, pace) = (rollout.status().trial, pace(context));
             return format!("trial {trial} {separator} {pace} {separator} {subject}");
         };
@@ -243,8 +238,8 @@ impl View for Stepper {
         let look = &context.look;
         let Some(shown) = self.shown(context) else {
             return match context.player.rollout() {
-                Some(_) => no_step_yet(context, area, buffer),
-                None => nobody(context, area, buffer),
+                Some(_) => draw_no_step(context, area, buffer),
+                None => draw_no_individual(context, area, buffer),
             };
         };
         let grid = context.scenery().grid.is_some();
@@ -297,10 +292,8 @@ impl View for Stepper {
     }
 
     fn prepare(&mut self, context: &ViewContext) {
-        let last = context
-            .player
-            .trace(0)
-            .map(|trace| (trace.trial, trace.step));
+        let latest = context.player.trace(0);
+        let last = latest.map(|trace| (trace.trial, trace.step));
         if last != self.last {
             self.last = last;
             self.back = 0;
@@ -324,14 +317,16 @@ impl View for Stepper {
     }
 
     fn help_text(&self) -> &'static str {
-        "One time step, taken apart. From the root down, every active subtask with the children\n\
-         that can act: V is what a child is worth itself, C what is expected after it, C~ the\n\
-         same with pseudo-rewards. A subtask chooses by C~+V at its own temperature; a\n\
-         primitive subtask acts by Q. Below it, what came of it, from the innermost subtask\n\
-         outwards: the pseudo-reward, C~ and C of the child that returned, and the errors of\n\
-         the updates, N time steps back (Thesis Algorithm 2.4, Equations 3.4 and 3.5).\n\
-         In worlds of cells the cells show V(root) and the greedy actions after the step.\n\
+        "One time step in detail. At the top stand the active subtasks, from the root down, with\n\
+         the children that they can choose. V is the return expected while the child runs, C the\n\
+         return expected after it until the subtask itself terminates, and C~ the same with\n\
+         pseudo-rewards. A composite subtask chooses by C~+V at its own temperature; a primitive\n\
+         subtask chooses its action by Q. The outcome follows, from the innermost subtask\n\
+         outwards: the pseudo-reward, C~ and C of the child that returned before and after their\n\
+         update, and the errors of the update for the state N time steps back (Thesis\n\
+         Algorithm 2.4, Equations 3.4 and 3.5).\n\
+         In worlds of cells, the cells show V(root) and the greedy actions after the step.\n\
          \n\
-         The rollout learns on a copy: nothing here touches evolution."
+         The rollout learns on a copy and does not affect evolution."
     }
 }

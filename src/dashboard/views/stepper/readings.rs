@@ -1,17 +1,17 @@
-//! What the agent reads off its sensors, before and after a time step.
+//! The sensor readings before and after a time step.
 
 use ratatui::text::Line;
 
-use super::Shown;
+use super::ShownStep;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::Paint;
 use crate::dashboard::look::lines::Pen;
-use crate::dashboard::views::shared::case;
+use crate::dashboard::views::shared::{line, variant_name};
 
 /// Columns of a reading.
 const VALUE: usize = 7;
 
-/// The readings; what was read before the step too, where there is room.
+/// Returns the readings after the step and, where they fit, before it.
 ///
 /// ```text
 ///  readings               before  after
@@ -20,49 +20,50 @@ const VALUE: usize = 7;
 /// ```
 pub(super) fn lines(
     context: &ViewContext,
-    shown: &Shown<'_>,
+    shown: &ShownStep<'_>,
     columns: usize,
 ) -> Vec<Line<'static>> {
     let trace = shown.trace;
     let both = columns >= 34;
     let name = columns.saturating_sub(if both { 2 * VALUE } else { VALUE });
-    let head = Pen::new(shown.look).cell("readings", name, Paint::Dim);
-    let head = match both {
-        true => head.right("before", VALUE, Paint::Dim),
-        false => head,
+    let numbers = |mut pen: Pen<'_>, before: &str, after: &str, paint| {
+        pen = pen.to(name);
+        if both {
+            pen = pen.right(before, VALUE, Paint::Dim);
+        }
+        pen.right(after, VALUE, paint).line()
     };
-    let mut lines = vec![head.right("after", VALUE, Paint::Dim).line()];
+    let head = Pen::new(shown.look).cell("readings", name, Paint::Dim);
+    let mut lines = vec![numbers(head, "before", "after", Paint::Dim)];
     for (before, after) in trace.before.readings.iter().zip(&trace.after.readings) {
         let words = after.name.replace('_', " ");
         let (words, unit) = words.rsplit_once(' ').unwrap_or((&words, ""));
-        let pen = Pen::new(shown.look).text(words, Paint::Text);
-        let room = (name.saturating_sub(pen.column())).saturating_sub(2);
-        let pen = match unit.len() <= room {
-            true => pen.text(format!(" {unit}"), Paint::Dim),
-            false => pen,
-        };
-        let pen = pen.to(name);
-        let pen = match both {
-            true => pen.right(&value(before.value), VALUE, Paint::Dim),
-            false => pen,
-        };
-        lines.push(pen.right(&value(after.value), VALUE, Paint::Title).line());
+        let mut pen = Pen::new(shown.look).text(words, Paint::Text);
+        if unit.len() + 2 <= name.saturating_sub(pen.column()) {
+            pen = pen.text(format!(" {unit}"), Paint::Dim);
+        }
+        let (before, after) = (value(before.value), value(after.value));
+        lines.push(numbers(pen, &before, &after, Paint::Title));
     }
-    if let Some(case) = case(context, &trace.after) {
-        lines.push(Pen::new(shown.look).text(case, Paint::Notice).line());
+    if let Some(variant) = variant_name(context, &trace.after) {
+        lines.push(line(shown.look, variant, Paint::Notice));
     }
     if context.scenery().grid.is_some() {
-        // Beside them stands what was the case before the step's lessons.
+        // The stack beside them shows the values before the step's updates.
         let text = format!("cells: V after step {}", trace.step);
-        lines.push(Pen::new(shown.look).text(text, Paint::Dim).line());
+        lines.push(line(shown.look, text, Paint::Dim));
     }
     if let Some(carried) = &trace.after.carries {
-        let text = format!("carries {carried}");
-        lines.push(Pen::new(shown.look).text(text, Paint::Object).line());
+        lines.push(line(
+            shown.look,
+            format!("carries {carried}"),
+            Paint::Object,
+        ));
     }
     lines
 }
 
+/// Writes a reading; `-` where there is none.
 fn value(value: Option<f64>) -> String {
     match value {
         None => String::from("-"),

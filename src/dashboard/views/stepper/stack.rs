@@ -2,25 +2,25 @@
 
 use ratatui::text::Line;
 
-use super::{Detail, Shown};
+use super::{Detail, ShownStep};
 use crate::dashboard::look::lines::{Pen, decimals, fixed, number, percent};
 use crate::dashboard::look::{Paint, shortened, width};
 use crate::learning::{ActionChoice, Choice, Explanation, Level, SelectionRule};
 
-/// Columns below which numbers have a digit less.
+/// In fewer columns, numbers have one digit less.
 const NARROW: usize = 60;
 
-/// Columns of a name in short.
+/// Columns of a shortened name.
 const SHORT: usize = 9;
 
-/// How wide the parts of a line are.
+/// The widths of the parts of a line.
 #[derive(Clone, Copy)]
 struct Widths {
     name: usize,
     number: usize,
     percent: usize,
     bar: usize,
-    /// Digits after the point.
+    /// Digits after the decimal point.
     digits: usize,
 }
 
@@ -29,12 +29,14 @@ impl Widths {
         let choices = explanation.levels.iter().flat_map(|level| &level.choices);
         let values = choices.flat_map(|choice| [choice.preference(), choice.value, choice.c]);
         let digits = decimals(values.chain(explanation.action.values.iter().copied()));
-        let (number, percent, digits) = match columns < NARROW {
-            true => (7, 6, digits - 1),
-            false => (8, 6, digits),
+        let (number, digits) = if columns < NARROW {
+            (7, digits - 1)
+        } else {
+            (8, digits)
         };
+        let percent = 6;
         let rest = columns.saturating_sub(4 * number + percent);
-        // Names are up to 15 long and indented by up to 4.
+        // Most names have up to 15 characters and are indented by up to 4.
         let name = rest.min(24);
         Self {
             name,
@@ -46,7 +48,7 @@ impl Widths {
     }
 }
 
-/// The call stack.
+/// Returns the lines of the call stack.
 ///
 /// ```text
 ///                        C~+V       V      C~       C     p
@@ -58,71 +60,161 @@ impl Widths {
 ///    Avoid  acts
 ///    ▸ (600,600)                -0.300                  74 %  ━━━━━━━
 /// ```
-pub(super) fn lines(shown: &Shown<'_>, columns: usize, detail: Detail) -> Vec<Line<'static>> {
+pub(super) fn lines(shown: &ShownStep<'_>, columns: usize, detail: Detail) -> Vec<Line<'static>> {
     let explanation = &shown.trace.explanation;
-    let widths = Widths::of(columns, explanation);
-    let mut lines = vec![head(shown, widths)];
+    let stack = Stack {
+        shown,
+        columns,
+        widths: Widths::of(columns, explanation),
+    };
+    let mut lines = vec![stack.head()];
     for (depth, level) in explanation.levels.iter().enumerate() {
-        lines.push(title(shown, widths, columns, depth, level));
+        lines.push(stack.title(depth, level));
         if level.chose || detail.standing {
             let choices = level.choices.iter();
-            lines.extend(choices.map(|choice| child(shown, widths, depth, level, choice)));
+            lines.extend(choices.map(|choice| stack.child(depth, level, choice)));
         }
     }
-    let depth = explanation.levels.len();
-    lines.extend(action(shown, widths, depth, &explanation.action, detail));
+    lines.extend(stack.action(explanation.levels.len(), &explanation.action, detail));
     lines
 }
 
-fn head(shown: &Shown<'_>, widths: Widths) -> Line<'static> {
-    let mut pen = Pen::new(shown.look).to(widths.name);
-    for name in ["C~+V", "V", "C~", "C"] {
-        pen = pen.right(name, widths.number, Paint::Dim);
-    }
-    pen.right("p", widths.percent, Paint::Dim).line()
-}
-
-fn title(
-    shown: &Shown<'_>,
-    widths: Widths,
+/// A call stack with its layout.
+struct Stack<'s> {
+    shown: &'s ShownStep<'s>,
     columns: usize,
-    depth: usize,
-    level: &Level,
-) -> Line<'static> {
-    let signs = shown.look.signs;
-    let value = level.value().map_or(String::new(), |value| {
-        format!("  V {}", fixed(value, widths.digits))
-    });
-    let paint = match level.chose {
-        true => Paint::Text,
-        false => Paint::Dim,
-    };
-    let tau = format!("  {} {}  ", signs.tau, number(level.temperature));
-    let pen = Pen::new(shown.look)
-        .to(depth)
-        .text(shown.name(level.node), Paint::Title)
-        .text(value, Paint::Title)
-        .text(tau, paint);
-    let room = columns.saturating_sub(pen.column());
-    let ways = how(shown, level);
-    let how = ways.iter().find(|way| width(way) <= room);
-    pen.text(how.unwrap_or(&ways[2]).as_str(), paint).line()
+    widths: Widths,
 }
 
-/// How a node chose: in words, in short, in the shortest way.
-fn how(shown: &Shown<'_>, level: &Level) -> [String; 3] {
+impl Stack<'_> {
+    /// Returns the heads of the columns.
+    fn head(&self) -> Line<'static> {
+        let mut pen = Pen::new(self.shown.look).to(self.widths.name);
+        for name in ["C~+V", "V", "C~", "C"] {
+            pen = pen.right(name, self.widths.number, Paint::Dim);
+        }
+        pen.right("p", self.widths.percent, Paint::Dim).line()
+    }
+
+    /// Returns the line of a node: its value and temperature, and how it chose.
+    fn title(&self, depth: usize, level: &Level) -> Line<'static> {
+        let digits = self.widths.digits;
+        let value = level.value();
+        let value = value.map_or(String::new(), |value| {
+            format!("  V {}", fixed(value, digits))
+        });
+        let paint = if level.chose { Paint::Text } else { Paint::Dim };
+        let tau = self.shown.look.signs.tau;
+        let tau = format!("  {tau} {}  ", number(level.temperature));
+        let pen = Pen::new(self.shown.look)
+            .to(depth)
+            .text(self.shown.name(level.node), Paint::Title)
+            .text(value, Paint::Title)
+            .text(tau, paint);
+        let room = self.columns.saturating_sub(pen.column());
+        let forms = how(self.shown, level);
+        let form = forms.iter().find(|form| width(form) <= room);
+        pen.text(form.unwrap_or(&forms[2]).as_str(), paint).line()
+    }
+
+    /// Returns the line of a child: its values and its probability.
+    fn child(&self, depth: usize, level: &Level, choice: &Choice) -> Line<'static> {
+        let is_active = choice.node == level.active;
+        let (name, values) = match (is_active, level.chose) {
+            (true, true) => (Paint::Active, Paint::Title),
+            (true, false) => (Paint::Title, Paint::Text),
+            (false, true) => (Paint::Text, Paint::Text),
+            (false, false) => (Paint::Dim, Paint::Dim),
+        };
+        let mut pen = self.name(depth, is_active, self.shown.name(choice.node), name);
+        for value in [choice.preference(), choice.value, choice.c_tilde, choice.c] {
+            let value = fixed(value, self.widths.digits);
+            pen = pen.right(&value, self.widths.number, values);
+        }
+        self.probability(pen, choice.probability, is_active, values)
+    }
+
+    /// Returns the lines of a primitive node: its actions with their values and probabilities.
+    fn action(&self, depth: usize, action: &ActionChoice, detail: Detail) -> Vec<Line<'static>> {
+        let (signs, widths) = (self.shown.look.signs, self.widths);
+        let how = match action.rule {
+            SelectionRule::EpsilonGreedy => format!("{}-greedily", signs.epsilon),
+            _ => String::from("by softmax"),
+        };
+        let how = format!("  acts {how}, {} {}", signs.tau, number(action.temperature));
+        let mut title = Pen::new(self.shown.look)
+            .to(depth)
+            .text(self.shown.name(action.node), Paint::Title)
+            .text(how, Paint::Text);
+        let above = widths.name + 2 * widths.number - 1;
+        if title.column() < above {
+            title = title.to(above).text("Q", Paint::Dim);
+        }
+        let mut lines = vec![title.line()];
+        let labels = self.shown.actions(action.node).iter();
+        let values = action.values.iter().zip(&action.probabilities);
+        for (index, (label, (value, share))) in labels.zip(values).enumerate() {
+            let is_chosen = index == action.chosen;
+            if !is_chosen && !detail.actions {
+                continue;
+            }
+            let (name, numbers) = if is_chosen {
+                (Paint::Active, Paint::Title)
+            } else {
+                (Paint::Text, Paint::Text)
+            };
+            let pen = self
+                .name(depth, is_chosen, label, name)
+                .to(widths.name + widths.number)
+                .right(&fixed(*value, widths.digits), widths.number, numbers)
+                .to(widths.name + 4 * widths.number);
+            lines.push(self.probability(pen, *share, is_chosen, numbers));
+        }
+        lines
+    }
+
+    /// Begins the line of a child or an action; a pointer marks the chosen one.
+    fn name(&self, depth: usize, is_chosen: bool, name: &str, paint: Paint) -> Pen<'_> {
+        let signs = self.shown.look.signs;
+        let sign = if is_chosen { signs.pointer } else { " " };
+        let pen = Pen::new(self.shown.look).to(depth);
+        let pen = pen.text(format!("{sign} "), paint);
+        let room = self.widths.name.saturating_sub(pen.column());
+        let name = shortened(name, room, signs);
+        pen.text(name, paint).to(self.widths.name)
+    }
+
+    /// Ends the line of a child or an action.
+    fn probability(
+        &self,
+        pen: Pen<'_>,
+        share: f32,
+        is_chosen: bool,
+        paint: Paint,
+    ) -> Line<'static> {
+        let share = f64::from(share);
+        let bar = if is_chosen { Paint::Good } else { Paint::Dim };
+        pen.right(&percent(share), self.widths.percent, paint)
+            .text("  ", Paint::Text)
+            .bar(share, self.widths.bar, bar)
+            .line()
+    }
+}
+
+/// Tells how a node chose, in a long, a shorter and the shortest form.
+fn how(shown: &ShownStep<'_>, level: &Level) -> [String; 3] {
     let epsilon = shown.look.signs.epsilon;
     let (long, short) = match (level.chose, level.rule) {
         (false, _) => {
             let active = shown.name(level.active);
             let short = shortened(active, SHORT, shown.look.signs);
-            (format!("goes on with {active}"), format!("on with {short}"))
+            (format!("continues {active}"), format!("continues {short}"))
         }
         (true, SelectionRule::OnlyChoice) => {
             (String::from("has one choice"), String::from("one choice"))
         }
         (true, SelectionRule::Uniform) => {
-            (String::from("chooses at random"), String::from("at random"))
+            (String::from("chooses uniformly"), String::from("uniform"))
         }
         (true, SelectionRule::Softmax) => {
             (String::from("chooses by softmax"), String::from("softmax"))
@@ -132,121 +224,10 @@ fn how(shown: &Shown<'_>, level: &Level) -> [String; 3] {
             format!("{epsilon}-greedy"),
         ),
     };
-    match level.invoked {
-        true => [
-            format!("invoked, {long}"),
-            format!("invoked, {short}"),
-            short,
-        ],
-        false => [long, short.clone(), short],
-    }
-}
-
-fn child(
-    shown: &Shown<'_>,
-    widths: Widths,
-    depth: usize,
-    level: &Level,
-    choice: &Choice,
-) -> Line<'static> {
-    let is_active = choice.node == level.active;
-    let (name, values) = match (is_active, level.chose) {
-        (true, true) => (Paint::Active, Paint::Title),
-        (true, false) => (Paint::Title, Paint::Text),
-        (false, true) => (Paint::Text, Paint::Text),
-        (false, false) => (Paint::Dim, Paint::Dim),
-    };
-    let mut pen = named(
-        shown,
-        widths,
-        depth,
-        is_active,
-        shown.name(choice.node),
-        name,
-    );
-    for value in [choice.preference(), choice.value, choice.c_tilde, choice.c] {
-        pen = pen.right(&fixed(value, widths.digits), widths.number, values);
-    }
-    probability(pen, widths, choice.probability, is_active, values).line()
-}
-
-/// The beginning of the line of a child or an action.
-fn named<'s>(
-    shown: &Shown<'s>,
-    widths: Widths,
-    depth: usize,
-    is_chosen: bool,
-    name: &str,
-    paint: Paint,
-) -> Pen<'s> {
-    let sign = if is_chosen {
-        shown.look.signs.pointer
+    if level.invoked {
+        let invoked = |how: &str| format!("invoked, {how}");
+        [invoked(&long), invoked(&short), short]
     } else {
-        " "
-    };
-    let pen = Pen::new(shown.look)
-        .to(depth)
-        .text(format!("{sign} "), paint);
-    let room = widths.name.saturating_sub(pen.column());
-    let name = shortened(name, room, shown.look.signs);
-    pen.text(name, paint).to(widths.name)
-}
-
-fn probability(
-    pen: Pen<'_>,
-    widths: Widths,
-    probability: f32,
-    is_chosen: bool,
-    paint: Paint,
-) -> Pen<'_> {
-    let share = f64::from(probability);
-    let bar = if is_chosen { Paint::Good } else { Paint::Dim };
-    pen.right(&percent(share), widths.percent, paint)
-        .text("  ", Paint::Text)
-        .bar(share, widths.bar, bar)
-}
-
-fn action(
-    shown: &Shown<'_>,
-    widths: Widths,
-    depth: usize,
-    action: &ActionChoice,
-    detail: Detail,
-) -> Vec<Line<'static>> {
-    let signs = shown.look.signs;
-    let how = match action.rule {
-        SelectionRule::EpsilonGreedy => format!("{}-greedily", signs.epsilon),
-        _ => String::from("by softmax"),
-    };
-    let title = Pen::new(shown.look)
-        .to(depth)
-        .text(shown.name(action.node), Paint::Title)
-        .text(
-            format!("  acts {how}, {} {}", signs.tau, number(action.temperature)),
-            Paint::Text,
-        );
-    let above = widths.name + 2 * widths.number - 1;
-    let title = match title.column() < above {
-        true => title.to(above).text("Q", Paint::Dim),
-        false => title,
-    };
-    let mut lines = vec![title.line()];
-    let labels = shown.actions(action.node).iter();
-    let values = action.values.iter().zip(&action.probabilities);
-    for (index, (label, (value, share))) in labels.zip(values).enumerate() {
-        let is_chosen = index == action.chosen;
-        if !is_chosen && !detail.actions {
-            continue;
-        }
-        let (name, numbers) = match is_chosen {
-            true => (Paint::Active, Paint::Title),
-            false => (Paint::Text, Paint::Text),
-        };
-        let pen = named(shown, widths, depth, is_chosen, label, name)
-            .to(widths.name + widths.number)
-            .right(&fixed(*value, widths.digits), widths.number, numbers)
-            .to(widths.name + 4 * widths.number);
-        lines.push(probability(pen, widths, *share, is_chosen, numbers).line());
+        [long, short.clone(), short]
     }
-    lines
 }

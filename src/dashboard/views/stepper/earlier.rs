@@ -1,24 +1,26 @@
-//! The time steps before the one that is shown, a line each.
+//! The earlier time steps, one line each.
 
 use ratatui::text::Line;
 
-use super::Shown;
+use super::ShownStep;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::look::Paint;
 use crate::dashboard::look::lines::{Pen, number};
+use crate::dashboard::views::shared;
 use crate::lab::inspection::StepTrace;
 
-/// Lines of the recorded steps before the one that is `back` steps back, as many as
-/// `rows`, the latest first.
+/// Returns at most `rows` lines with the recorded steps before the one that is `back` steps
+/// back, the latest first.
 ///
 /// ```text
 ///  step  101  type 1      Wander (600,600)        -0.300  FindBattery ✓
 /// ```
 ///
-/// The steps of an earlier trial stand below its number. Subtasks that ended stand behind, with ✓ at their goal and ! elsewhere.
+/// A line ends with the subtasks that terminated, marked ✓ at their goal and ! elsewhere.
+/// The steps of an earlier trial stand below its number.
 pub(super) fn lines(
     context: &ViewContext,
-    shown: &Shown<'_>,
+    shown: &ShownStep<'_>,
     back: usize,
     rows: usize,
 ) -> Vec<Line<'static>> {
@@ -28,7 +30,7 @@ pub(super) fn lines(
         if trace.trial != trial {
             trial = trace.trial;
             let text = format!("trial {trial}");
-            lines.push(Pen::new(shown.look).text(text, Paint::Dim).line());
+            lines.push(shared::line(shown.look, text, Paint::Dim));
         }
         lines.push(line(shown, trace));
     }
@@ -36,14 +38,12 @@ pub(super) fn lines(
     lines
 }
 
-fn line(shown: &Shown<'_>, trace: &StepTrace) -> Line<'static> {
+fn line(shown: &ShownStep<'_>, trace: &StepTrace) -> Line<'static> {
     let action = &trace.explanation.action;
     let label = shown.actions(action.node).get(action.chosen);
-    let what = format!(
-        "{} {}",
-        shown.name(action.node),
-        label.map_or("", String::as_str)
-    );
+    let label = label.map_or("", String::as_str);
+    let what = format!("{} {label}", shown.name(action.node));
+    let state_type = format!("  type {}  ", trace.before.state_type.number());
     let ends = trace
         .explanation
         .update_traces
@@ -54,16 +54,14 @@ fn line(shown: &Shown<'_>, trace: &StepTrace) -> Line<'static> {
         });
     let mut pen = Pen::new(shown.look)
         .right(&trace.step.to_string(), 5, Paint::Dim)
-        .text(
-            format!("  type {}  ", trace.before.state_type.number()),
-            Paint::Dim,
-        )
+        .text(state_type, Paint::Dim)
         .cell(&what, 26, Paint::Text)
         .right(&number(trace.explanation.reward), 8, Paint::Text);
     for (name, at_goal) in ends {
-        let (sign, paint) = match at_goal {
-            true => (shown.look.signs.finished, Paint::Good),
-            false => ("!", Paint::Bad),
+        let (sign, paint) = if at_goal {
+            (shown.look.signs.finished, Paint::Good)
+        } else {
+            ("!", Paint::Bad)
         };
         pen = pen.text(format!("  {name} {sign}"), paint);
     }
