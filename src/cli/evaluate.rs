@@ -57,7 +57,8 @@ pub(super) struct Report {
     seed: u64,
     warmup: usize,
     trials: usize,
-    banks: usize,
+    #[serde(rename = "banks")]
+    primitive_sets: usize,
     #[serde(flatten)]
     scored: Scored,
     control_steps_per_second: f64,
@@ -86,7 +87,7 @@ impl Args {
             trials: count(self.trials),
             repeats: count(self.repeats),
             // A set that no repeat uses is not trained.
-            banks: count(self.primitive_sets.min(self.repeats)),
+            primitive_sets: count(self.primitive_sets.min(self.repeats)),
         };
         let started = Instant::now();
         let bar = repeats(self.repeats);
@@ -101,7 +102,7 @@ impl Args {
             seed: self.answer.seed,
             warmup: protocol.warmup,
             trials: protocol.trials,
-            banks: protocol.banks,
+            primitive_sets: protocol.primitive_sets,
             control_steps_per_second: computed / started.elapsed().as_secs_f64(),
             scored,
         })
@@ -132,7 +133,7 @@ fn describe(report: &Report) -> String {
         counted(evaluation.repeats.len() as u64, "repeat"),
         counted(report.trials as u64, "scored trial"),
         counted(report.warmup as u64, "warm-up trial"),
-        counted(report.banks as u64, "primitive set"),
+        counted(report.primitive_sets as u64, "primitive set"),
         evaluation.mean,
         error(evaluation.standard_error, 1),
         scored.mean_return,

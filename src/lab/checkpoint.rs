@@ -1,8 +1,8 @@
-//! `checkpoint.json`: a state of a run, everything needed to go on.
+//! `checkpoint.json`: all that resuming a run needs.
 //!
-//! The file is one JSON object: the format, a CRC-32 of the bytes of `state`, and
-//! `state`. Numbers are written with as few digits as read back to the same bits, so
-//! loading and saving again gives the same bytes.
+//! The file is one JSON object: the format, the CRC-32 of the bytes of `state`, and `state`.
+//! Numbers have the fewest digits that read back to the same bits, so loading and saving gives
+//! the same bytes.
 
 use std::io;
 use std::path::Path;
@@ -20,49 +20,50 @@ use crate::learning::{PrimitiveSet, PrimitiveValues};
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 
-/// Largest checkpoint that is read, in bytes; a large population of complete
-/// hierarchies takes a tenth of it.
+/// Largest checkpoint that is read, in bytes. A large population of complete hierarchies takes a
+/// tenth of it.
 pub const MAX_CHECKPOINT_BYTES: u64 = 1 << 30;
 
-/// Largest value of a counter: 10 million control steps a second for 28 years.
+/// Largest value of a counter; 10 million control steps a second take 28 years to reach it.
 const MAX_COUNT: u64 = 1 << 53;
 
-/// How much of `events.jsonl` belongs to a checkpoint.
+/// The part of `events.jsonl` that belongs to a checkpoint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LogPosition {
-    /// Lines.
+    /// Number of lines.
     pub lines: u64,
-    /// Bytes.
+    /// Number of bytes.
     pub bytes: u64,
     /// CRC-32 of these bytes.
     pub crc32: u32,
 }
 
-/// A checkpoint as it is in the file; what it means is read with its experiment.
+/// The content of a checkpoint file. [`Checkpoint::state`] reads the population from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint {
     /// The complete scenario.
     pub scenario: Scenario,
-    /// Seed of all random streams; with the generation, the whole random state.
+    /// Seed of all random streams. There is no other random state: each stream begins anew with
+    /// a generation.
     pub seed: u64,
-    /// Generations lived.
+    /// Number of generations.
     pub generation: u64,
-    /// Whether the better half has one structure.
+    /// Whether evolution has converged.
     pub converged: bool,
     /// Control steps of the run, training of the primitive subtasks included.
     pub control_steps: u64,
     /// Id of the next new individual.
     pub next_id: u64,
-    /// The events so far.
+    /// The events before the checkpoint.
     pub events: LogPosition,
     primitives: Vec<PrimitiveFile>,
     individuals: Vec<IndividualFile>,
 }
 
-/// JSON without a space. A parameter like the one before is copied rather than worked out
-/// again: many have never been learned and all have the initial value.
+/// JSON without spaces. A number equal to the one before it is copied and not formatted again:
+/// many parameters still have their initial value.
 #[derive(Default)]
 struct Compact {
     bits: Option<u32>,
@@ -97,7 +98,7 @@ struct AnyFormat {
 }
 
 impl Checkpoint {
-    /// The checkpoint of a state.
+    /// Returns the checkpoint of a state.
     ///
     /// # Errors
     /// When a learned value is not finite.
@@ -130,7 +131,7 @@ impl Checkpoint {
         })
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     ///
     /// # Errors
     /// When serialisation fails.
@@ -150,10 +151,10 @@ impl Checkpoint {
         Ok(bytes)
     }
 
-    /// Reads the checkpoint in a file, if there is a file.
+    /// Reads a checkpoint file; returns `None` if there is no file.
     ///
     /// # Errors
-    /// When it cannot be read, or is none that this version of the program has written.
+    /// When it cannot be read or is not a checkpoint of this format.
     pub fn read(path: &Path) -> Result<Option<Self>, CheckpointError> {
         if !path.exists() {
             return Ok(None);
@@ -162,11 +163,10 @@ impl Checkpoint {
         Self::from_text(&text).map(Some)
     }
 
-    /// Reads the text of a file. Version and checksum are checked before anything else.
+    /// Reads the text of a checkpoint file. Format and checksum are checked first.
     ///
     /// # Errors
-    /// When the text is not a checkpoint of this version, was changed, or holds a
-    /// scenario that breaks a rule.
+    /// When the text is not a checkpoint of this format, was changed, or holds an invalid scenario.
     pub fn from_text(text: &str) -> Result<Self, CheckpointError> {
         let any: AnyFormat = parse_json(text)?;
         if any.format != CHECKPOINT_FORMAT {
@@ -186,11 +186,11 @@ impl Checkpoint {
         Ok(checkpoint)
     }
 
-    /// Whether the checkpoint was taken of a run of this scenario and seed. The
-    /// generation limit may have been changed since.
+    /// Checks that the checkpoint is of a run with this scenario and seed. The generation limit
+    /// may differ.
     ///
     /// # Errors
-    /// With the place of what differs, what was found and what is allowed.
+    /// With what differs, what was found and what is allowed.
     pub fn check_origin(&self, scenario: &Scenario, seed: u64) -> Result<(), String> {
         if seed != self.seed {
             let allowed = self.seed;
@@ -202,14 +202,14 @@ impl Checkpoint {
         own.evolution.generation_limit = scenario.evolution.generation_limit;
         if own != *scenario {
             return Err(String::from(
-                "scenario: found another; allowed: that of checkpoint.json, but for the \
+                "scenario: found another; allowed: that of checkpoint.json, except for \
                  generation_limit",
             ));
         }
         Ok(())
     }
 
-    /// The state that the checkpoint holds, for its scenario in the world of `catalogue`.
+    /// Returns the state in the checkpoint; `catalogue` is that of the scenario's world.
     ///
     /// # Errors
     /// When hierarchies or learned values do not fit the scenario.
@@ -244,7 +244,7 @@ impl Checkpoint {
         })
     }
 
-    /// The counters leave room to count on.
+    /// Checks that the counters cannot overflow.
     fn check_counters(&self) -> Result<(), CheckpointError> {
         for (name, found) in [
             ("generation", self.generation),
@@ -260,7 +260,7 @@ impl Checkpoint {
     }
 }
 
-/// A state in which learning has diverged cannot be gone on from, nor written as JSON.
+/// Checks that learning has not diverged: such a state can neither be resumed nor written as JSON.
 ///
 /// # Errors
 /// When a learned value is not finite.

@@ -14,29 +14,29 @@ pub enum CheckpointError {
     /// Its file cannot be read.
     #[error(transparent)]
     Read(#[from] FileProblem),
-    /// It is not the JSON of a checkpoint.
+    /// It is not JSON with the fields of a checkpoint.
     #[error(transparent)]
     Syntax(#[from] JsonError),
-    /// It was written by another version of the program.
+    /// It has another format.
     #[error("format: found {found}; allowed: {CHECKPOINT_FORMAT}")]
     Format {
         /// The format found.
         found: u32,
     },
-    /// Something was changed after it was written.
+    /// It was changed after it was written.
     #[error(
         "crc32: the state has {actual}, the file says {stated}: the file was changed or damaged"
     )]
     Checksum {
-        /// Of the state as it is.
+        /// The checksum of the state.
         actual: String,
-        /// As the file states it.
+        /// The checksum in the file.
         stated: String,
     },
     /// Its scenario is not valid.
     #[error("state.scenario: {0}")]
     Scenario(#[from] ScenarioError),
-    /// A part of it does not fit its scenario.
+    /// A part does not fit the scenario.
     #[error("{place}: {message}")]
     Misfit {
         /// Where in the file.
@@ -44,13 +44,13 @@ pub enum CheckpointError {
         /// What was found and what is allowed.
         message: String,
     },
-    /// A learned value is not a number; such a state is not written.
+    /// A learned value is not finite; such a state is not written.
     #[error(
         "{place}: learning has diverged, a learned value is not finite; allowed: settings \
          with a smaller learning rate or smaller initial values"
     )]
     Diverged {
-        /// What has learned it.
+        /// The learner.
         place: String,
     },
 }
@@ -65,7 +65,7 @@ impl From<CheckpointError> for FileProblem {
 }
 
 impl CheckpointError {
-    /// A part of a checkpoint that does not fit: its place, what was found, what is allowed.
+    /// Returns the error for the part at `place`; `message` says what was found or is allowed.
     pub(super) fn misfit(place: &str, message: String) -> Self {
         Self::Misfit {
             place: place.to_owned(),

@@ -1,4 +1,4 @@
-//! In which settings two scenarios differ.
+//! The settings in which two scenarios differ.
 
 use std::fmt;
 
@@ -6,17 +6,17 @@ use serde_json::Value;
 
 use crate::scenario::{EMBEDDED, Scenario};
 
-/// Longest value that is shown as it is, in characters.
+/// Longest value that is shown whole, in characters.
 const LONGEST: usize = 40;
 
-/// A setting that two scenarios do not have alike.
+/// A setting whose values differ between two scenarios.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// Its dotted path, as `--set` takes it.
     pub key: String,
-    /// Its value in the one scenario, as JSON; shortened where it is long.
+    /// Its value in the first scenario, as JSON; long values are shortened.
     pub one: String,
-    /// Its value in the other.
+    /// Its value in the second scenario.
     pub other: String,
 }
 
@@ -27,8 +27,8 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The settings that two scenarios do not have alike, in the order of their paths; what they
-/// are called and described as is no setting.
+/// Returns the settings in which two scenarios differ, in the order of their paths. Name and
+/// description do not count as settings.
 #[must_use]
 pub fn differences(one: &Scenario, other: &Scenario) -> Vec<Difference> {
     let mut found = Vec::new();
@@ -38,8 +38,8 @@ pub fn differences(one: &Scenario, other: &Scenario) -> Vec<Difference> {
     found
 }
 
-/// The settings in which a scenario departs from the embedded one of its name; none where
-/// there is no embedded one.
+/// Returns the settings in which a scenario overrides the built-in scenario of its name; none if
+/// there is no built-in one.
 #[must_use]
 pub fn overrides(scenario: &Scenario) -> Vec<Difference> {
     let embedded = EMBEDDED.iter().find(|known| known.name == scenario.name);
@@ -47,11 +47,11 @@ pub fn overrides(scenario: &Scenario) -> Vec<Difference> {
     embedded.map_or_else(Vec::new, |embedded| differences(scenario, &embedded))
 }
 
-/// Differences that are told one by one.
+/// Differences that are listed.
 const TOLD: usize = 6;
 
-/// The first differences, as `--set` takes them, and how many more there are; none if all is
-/// alike.
+/// Returns the first differences, as `--set` takes them, and the number of the others; `None` if
+/// there are none.
 #[must_use]
 pub fn summarise(differences: &[Difference]) -> Option<String> {
     let told: Vec<_> = differences
@@ -66,8 +66,7 @@ pub fn summarise(differences: &[Difference]) -> Option<String> {
     (!told.is_empty()).then(|| told.join(", ") + &more)
 }
 
-/// The name of a scenario and in what it departs from the embedded one of that name, in the
-/// words of [`summarise`].
+/// Returns the name of a scenario with the summary of its overrides, which [`summarise`] makes.
 #[must_use]
 pub fn with_changes(name: &str, changed: Option<&str>) -> String {
     match changed {
@@ -101,18 +100,15 @@ fn compare(path: &str, one: Option<&Value>, other: Option<&Value>, found: &mut V
 fn shown(value: Option<&Value>) -> String {
     let text = match value {
         None => return String::from("nothing"),
-        // As it may be written after `--set`.
+        // `--set` takes a word without quotes.
         Some(Value::String(word)) => word.clone(),
         Some(value) => value.to_string(),
     };
-    match text.chars().count() > LONGEST {
-        true => text
-            .chars()
-            .take(LONGEST - 3)
-            .chain("...".chars())
-            .collect(),
-        false => text,
+    if text.chars().count() <= LONGEST {
+        return text;
     }
+    let start = text.chars().take(LONGEST - 3);
+    start.chain("...".chars()).collect()
 }
 
 #[cfg(test)]
@@ -126,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_that_are_not_alike_are_found_and_no_others() {
+    fn exactly_the_settings_that_differ_are_found() {
         assert_eq!(differences(&smoke(&[]), &smoke(&[])), []);
         let renamed = smoke(&["name=mine", "description=of my own"]);
         assert_eq!(differences(&renamed, &smoke(&[])), []);
@@ -141,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn worlds_differ_as_a_whole_and_long_values_are_shortened() {
+    fn different_worlds_are_one_difference_and_long_values_are_shortened() {
         let found = differences(&smoke(&[]), &Scenario::load("cliff").unwrap());
         let world = found
             .iter()
@@ -153,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scenario_departs_from_the_embedded_one_of_its_name() {
+    fn overrides_are_those_of_the_built_in_scenario_of_the_same_name() {
         assert_eq!(overrides(&smoke(&[])), []);
         let changed = overrides(&smoke(&["evolution.generation_limit=3"]));
         assert_eq!(changed[0].to_string(), "evolution.generation_limit=3");

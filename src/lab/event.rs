@@ -7,15 +7,15 @@ use crate::evolution::GenerationRecord;
 /// Version of the event format.
 pub const EVENT_FORMAT: u32 = 1;
 
-/// A fact about a run. Everything that a person sees of a run is a fold over these.
+/// A fact about a run. Everything that is shown of a run is a fold over its events.
 ///
-/// *Recorded* facts follow from scenario and seed alone: they are the lines of
-/// `events.jsonl`, the same bytes for any number of threads, paused or not, broken off
-/// and resumed or not. The others tell how this process is getting on.
+/// *Recorded* events follow from scenario and seed alone. They are the lines of `events.jsonl`,
+/// the same bytes for any number of threads, with or without pauses and interruptions. The
+/// others describe the process that computes the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
-    /// Recorded: the run began.
+    /// Recorded: the run started.
     Started {
         /// Version of the event format.
         format: u32,
@@ -24,50 +24,50 @@ pub enum Event {
         /// Seed of the run.
         seed: u64,
     },
-    /// Recorded: a generation has lived.
+    /// Recorded: a generation is done.
     Generation(Box<GenerationRecord>),
     /// Recorded: evolution is over.
     Ended {
-        /// Generations lived.
+        /// Number of generations.
         generations: u64,
-        /// Why it is over.
+        /// Why it ended.
         ending: Ending,
     },
-    /// How far the generation under way is; coalesced when the reader is slow.
+    /// How far the present generation is; coalesced when the reader is slow.
     Progress {
-        /// The generation under way; 0 while primitive subtasks are trained.
+        /// The present generation; 0 while primitive subtasks are trained.
         generation: u64,
-        /// Lives lived, of all individuals together: they come to their ends at the same
-        /// time, so that no thread waits.
+        /// Individuals finished, as trials finished divided by trials per individual: all
+        /// individuals advance in turns and end together.
         lived: usize,
         /// Individuals in the population.
         population: usize,
-        /// Control steps computed by this process so far.
+        /// Control steps that this process has computed.
         control_steps: u64,
     },
-    /// The run waits.
+    /// The run was paused.
     Paused,
-    /// The run goes on.
+    /// The run was resumed after a pause.
     Resumed,
-    /// A checkpoint is on disk.
+    /// `checkpoint.json` was written.
     CheckpointSaved {
-        /// The generation it was taken after.
+        /// The generation that the checkpoint was taken after.
         generation: u64,
     },
 }
 
-/// Why an evolution is over.
+/// Why an evolution ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// The better half of the population has one structure.
+    /// All individuals of the better half have the same structure.
     Converged,
-    /// The generation limit is reached.
+    /// The generation limit was reached.
     GenerationLimit,
 }
 
 impl Event {
-    /// Whether the fact is a line of `events.jsonl`.
+    /// Returns whether the event is a line of `events.jsonl`.
     #[must_use]
     pub fn is_recorded(&self) -> bool {
         matches!(
@@ -76,7 +76,7 @@ impl Event {
         )
     }
 
-    /// Whether the fact may be left out when the reader is slow.
+    /// Returns whether the event may be dropped when the reader is slow.
     #[must_use]
     pub fn is_progress(&self) -> bool {
         matches!(self, Self::Progress { .. })

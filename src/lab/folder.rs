@@ -1,4 +1,4 @@
-//! The run folder: what lies in it, who may write it, how it comes to be.
+//! The run folder: its files, its lock, and how it is created.
 
 use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -17,27 +17,27 @@ use crate::files::{
 };
 use crate::scenario::MAX_FILE_BYTES;
 
-/// How the names of run folders begin that are being made.
+/// Prefix of the names of run folders under construction.
 const NEW_RUN: &str = ".new-run-";
 
-/// Making a run folder takes milliseconds: one that was begun so long ago was left by a
-/// process that died.
+/// Age at which a folder under construction counts as abandoned. Creating one takes milliseconds,
+/// so an older one was left by a process that died.
 const ABANDONED: Duration = Duration::from_secs(3600);
 
-/// Which generations' checkpoints are kept for time travel.
+/// Which generations' checkpoints are kept, so that past generations can be inspected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Keep {
-    /// Every generation's.
+    /// Those of all generations.
     #[default]
     All,
-    /// Every n-th generation's.
+    /// Those of every n-th generation.
     Every(u64),
-    /// None but the latest, `checkpoint.json`.
+    /// Only the latest, `checkpoint.json`.
     None,
 }
 
 impl Keep {
-    /// Whether the checkpoint of a generation is kept.
+    /// Returns whether the checkpoint of a generation is kept.
     #[must_use]
     pub fn keeps(self, generation: u64) -> bool {
         match self {
@@ -73,32 +73,36 @@ impl FromStr for Keep {
     }
 }
 
-/// A run folder that this process may write: it holds the folder's lock.
+/// A run folder whose lock this process holds, so that it may write to it.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
     _lock: Lock,
 }
 
-/// The lock of a run folder. It is given up by name: closing the file would leave it to
-/// a child that another thread of the process is about to start, for a moment.
+/// The lock of a run folder.
+///
+/// It is released explicitly: a child process that another thread starts at this moment inherits
+/// the open file, and closing it here alone would not release the lock.
 #[derive(Debug)]
 struct Lock(File);
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // A lock that cannot be given up goes with its file.
+        // If this fails, closing the file releases the lock.
         let _ = self.0.unlock();
     }
 }
 
 impl RunFolder {
-    /// Makes a new run folder. It appears with its `run.json` and lock in one step, so
-    /// that whatever is found later is a whole run folder.
+    /// Creates a run folder.
+    ///
+    /// It appears together with its `run.json` and its lock in one step, so a folder that is
+    /// found later is complete.
     ///
     /// # Errors
-    /// When something is there already - with `force`, something that is no run folder
-    /// or that another process works on -, or the operating system refuses.
+    /// When `path` exists already, or the operating system refuses. With `force`, an existing run
+    /// folder is replaced unless another process works on it.
     pub fn create(path: &Path, manifest: &Manifest, force: bool) -> Result<Self, FolderError> {
         let parent = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -122,7 +126,7 @@ impl RunFolder {
             }
             _ => io_error(path, error),
         })?;
-        // The folder is no longer under its temporary name, so there is nothing to delete.
+        // The folder has been renamed, so there is nothing to delete under the temporary name.
         let _moved = fresh.keep();
         sync_folder(parent).map_err(|error| io_error(parent, error))?;
         Ok(Self {
@@ -131,8 +135,8 @@ impl RunFolder {
         })
     }
 
-    /// Clears the place of a new run folder; an empty folder is no obstacle. Returns the
-    /// lock of the run that was replaced.
+    /// Removes what stands in the way of a new run folder, and returns the lock of the run that
+    /// was there. An empty folder may stay.
     fn make_room(
         path: &Path,
         parent: &Path,
@@ -151,7 +155,7 @@ impl RunFolder {
             return Err(occupied(path, manifest));
         }
         let old = Self::open(path)?;
-        // It goes in one step: a process killed here leaves no half of a run in its place.
+        // Removed in one step: a process that is killed here leaves no half of a run.
         let aside = temporary(parent)?;
         fs::rename(path, aside.path().join("replaced")).map_err(|error| io_error(path, error))?;
         aside.close().map_err(|error| io_error(path, error))?;
@@ -161,7 +165,7 @@ impl RunFolder {
     /// Opens an existing run folder for writing.
     ///
     /// # Errors
-    /// When it is no run folder, or another process works on it.
+    /// When it is not a run folder, or another process works on it.
     pub fn open(path: &Path) -> Result<Self, FolderError> {
         if !path.join("run.json").is_file() {
             return Err(FolderError::NotARun {
@@ -178,43 +182,43 @@ impl RunFolder {
         Ok(folder)
     }
 
-    /// The folder.
+    /// Returns the path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// `run.json`.
+    /// Returns the path of `run.json`.
     #[must_use]
     pub fn manifest(&self) -> PathBuf {
         self.path.join("run.json")
     }
 
-    /// `checkpoint.json`.
+    /// Returns the path of `checkpoint.json`.
     #[must_use]
     pub fn checkpoint(&self) -> PathBuf {
         self.path.join("checkpoint.json")
     }
 
-    /// `events.jsonl`.
+    /// Returns the path of `events.jsonl`.
     #[must_use]
     pub fn events(&self) -> PathBuf {
         self.path.join("events.jsonl")
     }
 
-    /// `summary.json`.
+    /// Returns the path of `summary.json`.
     #[must_use]
     pub fn summary(&self) -> PathBuf {
         self.path.join("summary.json")
     }
 
-    /// The folder of kept checkpoints.
+    /// Returns the path of the folder of kept checkpoints.
     #[must_use]
     pub fn generations(&self) -> PathBuf {
         self.path.join("generations")
     }
 
-    /// The kept checkpoint of a generation.
+    /// Returns the path of the kept checkpoint of a generation.
     #[must_use]
     pub fn generation(&self, generation: u64) -> PathBuf {
         self.generations().join(format!("{generation:06}.json"))
@@ -235,7 +239,7 @@ impl RunFolder {
     /// Reads the `run.json` of a run folder.
     ///
     /// # Errors
-    /// When it is missing or is not the `run.json` of a valid run.
+    /// When it is missing or is not a valid `run.json`.
     pub fn read_manifest(folder: &Path) -> Result<Manifest, FolderError> {
         let file = folder.join("run.json");
         if !file.is_file() {
@@ -259,7 +263,7 @@ impl RunFolder {
     }
 }
 
-/// A new folder with a name of its own, deleted if it is not kept.
+/// Creates a folder with a unique name, which is deleted unless it is kept.
 fn temporary(parent: &Path) -> Result<TempDir, FolderError> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(NEW_RUN);
@@ -286,7 +290,7 @@ fn lock(folder: &Path) -> Result<Lock, FolderError> {
     }
 }
 
-/// There is something where the run of `wanted` was to be.
+/// Returns the error for an existing `path` where the run of `wanted` was to be created.
 fn occupied(path: &Path, wanted: &Manifest) -> FolderError {
     let by = match RunFolder::read_manifest(path) {
         Ok(found) => Occupied::by(&found, wanted),

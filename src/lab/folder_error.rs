@@ -11,12 +11,12 @@ use crate::files::FileError;
 /// Why a run folder cannot be used.
 #[derive(Debug, Error)]
 pub enum FolderError {
-    /// There is something at the place of a new run folder.
+    /// The path of a new run folder exists already.
     #[error("{path}: exists already {}", by.and_what_to_do(path))]
     Exists {
-        /// The place.
+        /// The path.
         path: String,
-        /// What is there.
+        /// What it holds.
         by: Occupied,
     },
     /// It is not a run folder.
@@ -36,24 +36,24 @@ pub enum FolderError {
     File(#[from] FileError),
 }
 
-/// What is where a new run was to be.
+/// What the path of a new run holds already.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Occupied {
-    /// The same run: scenario and seed.
+    /// A run of the same scenario and seed.
     Same,
-    /// Another run, and in what it differs from the one that was to be.
+    /// Another run, and its differences from the new one.
     Another(Vec<Difference>),
     /// A run folder whose `run.json` cannot be read.
     Unreadable,
-    /// Something that is no run folder.
+    /// Something other than a run folder.
     NoRun,
 }
 
-/// Differences that are told one by one.
+/// Differences that are listed.
 const TOLD: usize = 3;
 
 impl Occupied {
-    /// By the run `found` where `wanted` was to be.
+    /// Returns what the run `found` means to the new run `wanted`.
     pub(super) fn by(found: &Manifest, wanted: &Manifest) -> Self {
         let mut all = Vec::new();
         let mut differ = |key: &str, one: String, other: String| {
@@ -66,9 +66,10 @@ impl Occupied {
         differ("scenario", one.name.clone(), other.name.clone());
         differ("seed", found.seed.to_string(), wanted.seed.to_string());
         all.extend(differences(one, other));
-        match all.is_empty() {
-            true => Self::Same,
-            false => Self::Another(all),
+        if all.is_empty() {
+            Self::Same
+        } else {
+            Self::Another(all)
         }
     }
 
@@ -91,7 +92,7 @@ impl Occupied {
     }
 }
 
-/// The first differences, and how many more there are.
+/// Writes the first differences and the number of the others.
 struct Told<'d>(&'d [Difference]);
 
 impl fmt::Display for Told<'_> {

@@ -1,4 +1,4 @@
-//! What has changed in a run folder since the last look.
+//! Reads what is new in a run folder.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -17,19 +17,19 @@ use super::pulse::{BEAT, Beat, PULSE_FILE};
 use super::run_error::RunError;
 use crate::files::{FileError, Stamp, read_bytes};
 
-/// A pulse that stays the same for this long has stopped: more than ten beats, and
-/// the minute for which some shares cache what they know of a file is the exception.
+/// Time after which an unchanged pulse counts as stopped. Most network file systems show a change
+/// much sooner; the few that cache files for a minute make a run look silent for a while.
 const SILENCE: Duration = BEAT.saturating_mul(15);
 
 /// Largest pulse that is read, in bytes.
 const MAX_PULSE_BYTES: u64 = 1 << 16;
 
-/// Looks at which something is found unreadable before it is told: a share may show a
-/// file before its content.
+/// Failed reads in a row before trouble is reported: a network file system may show a file
+/// before its content.
 const PATIENCE: u32 = 5;
 
-/// Looks at a run folder again and again, without taking a lock or leaving a trace, and reads
-/// what is new there.
+/// Reads a run folder again and again and reports what is new. It takes no lock and writes
+/// nothing.
 #[derive(Debug)]
 pub struct Follower {
     folder: PathBuf,
@@ -47,7 +47,7 @@ struct Stamped<T> {
     value: T,
 }
 
-/// How far the log was read.
+/// The position up to which the log was read.
 #[derive(Debug, Default)]
 struct LogReader {
     stamp: Option<Stamp>,
@@ -58,7 +58,7 @@ struct LogReader {
 }
 
 impl Follower {
-    /// Of the run in a folder, which need not be there yet.
+    /// Returns a follower of the run in a folder, which need not exist yet.
     #[must_use]
     pub fn of(folder: &Path) -> Self {
         Self {
@@ -72,10 +72,10 @@ impl Follower {
         }
     }
 
-    /// What is new since the last look.
-    pub(super) fn look(&mut self, now: Instant) -> Vec<News> {
+    /// Returns what is new since the last call.
+    pub(super) fn news(&mut self, now: Instant) -> Vec<News> {
         let mut news = Vec::new();
-        match self.try_look(now, &mut news) {
+        match self.update(now, &mut news) {
             Ok(()) => self.unreadable = 0,
             Err(error) => {
                 self.unreadable += 1;
@@ -87,10 +87,10 @@ impl Follower {
         news
     }
 
-    /// The folder as it is.
+    /// Returns the present content of the folder.
     pub(super) fn read(mut self) -> Result<Recording, RunError> {
         let mut news = Vec::new();
-        self.try_look(Instant::now(), &mut news)?;
+        self.update(Instant::now(), &mut news)?;
         let events = news.into_iter().filter_map(|news| match news {
             News::Event(event) => Some(event),
             _ => None,
@@ -102,7 +102,7 @@ impl Follower {
                 events,
                 liveness: self.liveness.unwrap_or(Liveness::Stopped),
             }),
-            // The error that tells what is missing.
+            // Fails, and says what is missing.
             None => Ok(Recording {
                 manifest: RunFolder::read_manifest(&self.folder)?,
                 events,
@@ -111,17 +111,17 @@ impl Follower {
         }
     }
 
-    /// Adds what is new since the last look; what cannot be read, for the moment at least, is
-    /// an error, and looked at again the next time.
+    /// Adds what is new since the last call to `news`. What cannot be read now is tried again at
+    /// the next call.
     ///
     /// # Errors
     /// When `run.json` or the log cannot be read.
-    pub fn try_look(&mut self, now: Instant, news: &mut Vec<News>) -> Result<(), RunError> {
+    pub fn update(&mut self, now: Instant, news: &mut Vec<News>) -> Result<(), RunError> {
         let Some(stamp) = self.stamp("run.json") else {
             if self.run.take().is_some() {
                 self.forget();
             }
-            self.tell_life(Liveness::Absent, news);
+            self.set_liveness(Liveness::Absent, news);
             return Ok(());
         };
         if self.run.as_ref().is_none_or(|run| run.stamp != stamp) {
@@ -135,20 +135,20 @@ impl Follower {
             }
             self.run = Some(Stamped { stamp, value });
         }
-        let read = self.look_at_log(news);
-        self.look_at_checkpoint(news);
-        self.look_at_pulse(now, news);
+        let read = self.read_log(news);
+        self.read_checkpoint(news);
+        self.read_pulse(now, news);
         read
     }
 
-    /// What was told is void.
+    /// Forgets what was read, so that all is reported again.
     fn forget(&mut self) {
         self.log = LogReader::default();
         self.checkpoint = None;
         self.beat = None;
     }
 
-    fn look_at_log(&mut self, news: &mut Vec<News>) -> Result<(), RunError> {
+    fn read_log(&mut self, news: &mut Vec<News>) -> Result<(), RunError> {
         let path = self.folder.join("events.jsonl");
         let stamp = self.stamp("events.jsonl");
         if stamp == self.log.stamp {
@@ -163,23 +163,23 @@ impl Follower {
             None => None,
         };
         let mut reader = file.map(BufReader::new);
-        let goes_on = match &mut reader {
-            Some(reader) => self.log.goes_on_in(reader).map_err(in_log)?,
+        let is_same = match &mut reader {
+            Some(reader) => self.log.is_in(reader).map_err(in_log)?,
             None => false,
         };
-        if !goes_on {
-            // A resumed run cut off what was not in its checkpoint.
+        if !is_same {
+            // A resumed run has cut off the events after its checkpoint.
             news.push(News::Run(Box::new(run.value.clone())));
             self.forget();
         }
         if let Some(mut reader) = reader {
-            self.log.read_on(&mut reader, news).map_err(in_log)?;
+            self.log.read_further(&mut reader, news).map_err(in_log)?;
         }
         self.log.stamp = stamp;
         Ok(())
     }
 
-    fn look_at_checkpoint(&mut self, news: &mut Vec<News>) {
+    fn read_checkpoint(&mut self, news: &mut Vec<News>) {
         #[derive(Deserialize)]
         struct File {
             state: State,
@@ -194,8 +194,8 @@ impl Follower {
         }
         self.checkpoint = stamp;
         let bytes = read_bytes(&self.folder.join("checkpoint.json"), MAX_CHECKPOINT_BYTES);
-        // Whoever resumes the run is told what is wrong with a checkpoint; a follower
-        // needs none.
+        // A follower does not need the checkpoint, so a damaged one is no trouble; resuming
+        // reports it.
         let file = bytes
             .ok()
             .and_then(|bytes| serde_json::from_slice(&bytes).ok());
@@ -205,30 +205,31 @@ impl Follower {
         }
     }
 
-    fn look_at_pulse(&mut self, now: Instant, news: &mut Vec<News>) {
+    fn read_pulse(&mut self, now: Instant, news: &mut Vec<News>) {
         let path = self.folder.join(PULSE_FILE);
         let bytes = read_bytes(&path, MAX_PULSE_BYTES).ok();
         let found: Option<Beat> = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok());
         let Some(found) = found else {
             self.beat = None;
-            let life = match self.log.over {
-                true => Liveness::Over,
-                false => Liveness::Stopped,
+            let liveness = if self.log.over {
+                Liveness::Over
+            } else {
+                Liveness::Stopped
             };
-            self.tell_life(life, news);
+            self.set_liveness(liveness, news);
             return;
         };
         match &mut self.beat {
             Some((beat, since)) if *beat == found => {
                 if is_dead(&found) || now.duration_since(*since) >= SILENCE {
-                    self.tell_life(Liveness::Silent, news);
+                    self.set_liveness(Liveness::Silent, news);
                 }
             }
             known => {
                 let before = known.replace((found.clone(), now)).map(|(beat, _)| beat);
                 let dead = is_dead(&found);
-                tell_beat(before.as_ref(), found, news);
-                self.tell_life(
+                compare_beats(before.as_ref(), found, news);
+                self.set_liveness(
                     if dead {
                         Liveness::Silent
                     } else {
@@ -240,9 +241,9 @@ impl Follower {
         }
     }
 
-    fn tell_life(&mut self, life: Liveness, news: &mut Vec<News>) {
-        if self.liveness.replace(life) != Some(life) {
-            news.push(News::Liveness(life));
+    fn set_liveness(&mut self, liveness: Liveness, news: &mut Vec<News>) {
+        if self.liveness.replace(liveness) != Some(liveness) {
+            news.push(News::Liveness(liveness));
         }
     }
 
@@ -252,8 +253,8 @@ impl Follower {
 }
 
 impl LogReader {
-    /// Whether what was read is still there: its last line is where it was.
-    fn goes_on_in(&self, file: &mut (impl Read + Seek)) -> Result<bool, LogError> {
+    /// Returns whether the log still holds what was read: whether its last line is in its place.
+    fn is_in(&self, file: &mut (impl Read + Seek)) -> Result<bool, LogError> {
         let begin = self.bytes - self.last.len() as u64;
         file.seek(SeekFrom::Start(begin))?;
         let mut found = Vec::new();
@@ -261,7 +262,7 @@ impl LogReader {
         Ok(found == self.last)
     }
 
-    fn read_on(
+    fn read_further(
         &mut self,
         reader: &mut (impl std::io::BufRead + Seek),
         news: &mut Vec<News>,
@@ -279,8 +280,8 @@ impl LogReader {
     }
 }
 
-/// Tells as events what a beat says that the one before did not.
-fn tell_beat(before: Option<&Beat>, beat: Beat, news: &mut Vec<News>) {
+/// Adds the differences between two beats as events.
+fn compare_beats(before: Option<&Beat>, beat: Beat, news: &mut Vec<News>) {
     use super::controls::Activity;
     let was_paused = before.is_some_and(|beat| beat.activity == Activity::Paused);
     let is_paused = beat.activity == Activity::Paused;
@@ -293,7 +294,7 @@ fn tell_beat(before: Option<&Beat>, beat: Beat, news: &mut Vec<News>) {
     news.extend(progress.map(News::Event));
 }
 
-/// Whether the process is known to be no more: it ran on this machine and is not there.
+/// Returns whether the process is known to be dead: it ran on this machine and does not exist.
 fn is_dead(beat: &Beat) -> bool {
     if beat.host == host_name() {
         use rustix::io::Errno;
@@ -306,7 +307,7 @@ fn is_dead(beat: &Beat) -> bool {
 }
 
 impl Recording {
-    /// Reads the run in a folder. A last event without its end is dropped.
+    /// Reads the run in a folder. An incomplete last event is ignored.
     ///
     /// # Errors
     /// When the folder holds no run, or its log cannot be read.

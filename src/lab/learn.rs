@@ -1,4 +1,4 @@
-//! How one learner learns a finite world, held against the exact values.
+//! Lets single learners learn a finite world and compares them with the exact values.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -13,77 +13,76 @@ use crate::random::{Purpose, Stream, stream};
 use crate::worlds::World;
 use crate::worlds::mdp::{MAX_SWEEPS, Mdp, PolicyTable};
 
-/// Sweeps for the value of a greedy policy, or four times as many as the optimal values took: one
-/// that has not come to an end after as many steps is far from optimal.
+/// Fewest sweeps for the value of a greedy policy. A policy whose episodes have not ended after
+/// as many steps is far from optimal.
 const CHECK_SWEEPS: usize = 300;
 
-/// How learning is measured.
+/// The numbers of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnProtocol {
-    /// Primitive steps after which a repeat ends, with the end of its trial.
+    /// Primitive steps of a repeat, which ends with the trial under way.
     pub steps: u64,
     /// Primitive steps between two checks.
     pub every: u64,
-    /// The greedy policy counts as optimal when its expected return is no further than
-    /// this below the optimum.
+    /// Largest shortfall of expected return at which a greedy policy counts as optimal.
     pub tolerance: f64,
-    /// Learners that begin from nothing.
+    /// Number of learners; each starts untrained.
     pub repeats: usize,
 }
 
-/// What a check found.
+/// The result of a check, which is made every [`LearnProtocol::every`] steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LearnCheck {
     /// Primitive steps so far.
     pub steps: u64,
-    /// Mean return of the trials that ended since the last check, exploration included;
-    /// `null` if none did.
+    /// Mean return of the trials since the last check, with exploration; `None` if no trial
+    /// ended.
     pub return_while_learning: Option<f64>,
-    /// Exact expected return of the greedy policy from a random start; `null` for TD(0),
-    /// whose policy is given, and for a policy that does not come to an end.
+    /// Exact expected return of the greedy policy from a random start; `None` for TD(0), whose
+    /// policy is given, and for a policy whose episodes do not end.
     pub greedy_return: Option<f64>,
-    /// Largest difference of a learned value to the exact one.
+    /// Largest absolute difference between a learned value and the exact one.
     pub largest_error: f64,
 }
 
-/// One learner's course.
+/// The course of one learner.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Course {
-    /// Primitive steps until the first check that found the greedy policy optimal.
+    /// Primitive steps until the first check at which the greedy policy was optimal.
     pub steps_until_optimal: Option<u64>,
-    /// Primitive steps until the first check from which on it always was; `null` if it
-    /// was not at the last.
+    /// Primitive steps until the check from which on the greedy policy stayed optimal; `None` if
+    /// it was not optimal at the last check.
     pub steps_until_always_optimal: Option<u64>,
-    /// Trials.
+    /// Number of trials.
     pub trials: u64,
     /// All checks.
     pub checks: Vec<LearnCheck>,
-    /// The learned value of every state at the end, in the order of the exact ones.
+    /// The learned value of every state at the end, in the order of [`Learned::exact`].
     #[serde(skip)]
     pub values: Vec<Option<f64>>,
 }
 
-/// How learners of one kind learned.
+/// The result of all learners.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Learned {
-    /// Expected return of the optimal policy from a random start, exactly.
+    /// Exact expected return of the optimal policy from a random start.
     pub optimal_return: f64,
-    /// Mean of [`Course::steps_until_optimal`], where all repeats got there.
+    /// Mean of [`Course::steps_until_optimal`]; `None` unless all repeats have it.
     pub steps_until_optimal: Option<Mean>,
-    /// Mean of [`Course::steps_until_always_optimal`], where all repeats got there.
+    /// Mean of [`Course::steps_until_always_optimal`]; `None` unless all repeats have it.
     pub steps_until_always_optimal: Option<Mean>,
-    /// Whether the policy is given, and none becomes optimal: TD(0).
+    /// Whether the policy was given (TD(0)), so that none becomes optimal.
     pub policy_is_given: bool,
-    /// Mean of the last checks' greedy returns, where all repeats' policies come to an end.
+    /// Mean of the last greedy returns; `None` unless all repeats have one.
     pub final_greedy_return: Option<Mean>,
-    /// The exact values: optimal ones, for TD(0) those of its policy.
+    /// The exact values: the optimal ones, or those of the given policy for TD(0).
     #[serde(skip)]
     pub exact: Vec<Option<f64>>,
-    /// Every repeat.
+    /// All repeats.
     pub repeats: Vec<Course>,
 }
 
-/// Why nothing is learned.
+/// Why learners cannot be compared.
 #[derive(Debug, Error)]
 pub enum LearnError {
     /// The world is not finite.
@@ -103,11 +102,11 @@ pub enum LearnError {
     Stopped(#[from] Stopped),
 }
 
-/// Lets learners learn; `progress` is told how many repeats are done.
+/// Lets untrained learners learn the world of `experiment`; calls `progress` with the number of
+/// repeats done so far.
 ///
 /// # Errors
-/// When the world is not finite, or has no features for the algorithm, or the gate is
-/// stopped.
+/// When the world is not finite or lacks features for the algorithm, or the gate is stopped.
 pub fn learn<W: World>(
     experiment: &Experiment<W>,
     seed: u64,
@@ -158,14 +157,14 @@ pub fn learn<W: World>(
     })
 }
 
-/// What learners are held against.
+/// The exact values that learners are compared with.
 struct Exam<'f, P> {
     finite: &'f Mdp<P>,
     protocol: &'f LearnProtocol,
     discount: f64,
-    /// The policy that TD(0) is given.
+    /// The policy given to TD(0).
     policy: Option<PolicyTable>,
-    /// What the learned values should be.
+    /// The values that learning should arrive at.
     exact: Vec<f64>,
     optimal_return: f64,
     /// Sweeps for the value of a greedy policy.
@@ -256,13 +255,14 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
             steps,
             return_while_learning: mean(recent).map(|mean| mean.mean),
             greedy_return: greedy.flatten(),
-            // A learner that has diverged is infinitely wrong, not right.
+            // `total_cmp` puts NaN last, so a learner that has diverged has the largest error.
             largest_error: errors.max_by(f64::total_cmp).unwrap_or(0.0),
         }
     }
 
-    /// The expected return of a policy from a random start; `None` where more steps would
-    /// change it, for it does not come to an end. It may loop where no trial comes to.
+    /// Returns the expected return of a policy from a random start; `None` where more sweeps
+    /// still change it, because its episodes do not end. A policy may loop in states that no
+    /// trial visits: these do not count.
     fn settled_return(&self, policy: &PolicyTable) -> Option<f64> {
         let after = |sweeps| self.finite.policy_values(policy, self.discount, sweeps);
         let (values, sweeps) = after(self.check_sweeps);
@@ -274,15 +274,16 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
         ((later - value).abs() < 1e-9).then_some(later)
     }
 
-    /// The learned value of every state; 0 in terminal ones.
+    /// Returns the learned value of every state; 0 for terminal states.
     fn values<L: Learner<P>>(&self, learner: &mut L) -> Vec<Option<f64>> {
         let states = self.finite.states.iter();
         states
             .map(|state| {
                 let state = state.as_ref()?;
-                Some(match state.outcomes.is_empty() {
-                    true => 0.0,
-                    false => learner.value(state),
+                Some(if state.outcomes.is_empty() {
+                    0.0
+                } else {
+                    learner.value(state)
                 })
             })
             .collect()

@@ -1,5 +1,4 @@
-//! Flat learners and hierarchies as one kind of thing: they learn from episodes, and have
-//! a value and a best action for every state.
+//! The algorithms that a single learner can use, behind one interface.
 
 use crate::evolution::Experiment;
 use crate::hierarchy::Tree;
@@ -26,37 +25,37 @@ pub enum Algorithm {
 /// The policy whose values TD(0) learns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GivenPolicy {
-    /// The optimal policy; of equally good actions all alike.
+    /// The optimal policy; equally good actions are equally likely.
     Optimal,
-    /// All actions alike.
+    /// All actions are equally likely.
     Random,
 }
 
-/// Knows a value and a best action for states.
+/// A learner that has a value and a best action for every state.
 pub(super) trait Learner<P> {
-    /// The value of a state that is not terminal.
+    /// Returns the value of a state that is not terminal.
     fn value(&mut self, state: &MdpState<P>) -> f64;
 
-    /// The best action in a state, by its place in [`Mdp::actions`]; `None` where
+    /// Returns the best action in a state as its index in [`Mdp::actions`]; `None` where
     /// it can do nothing.
     fn greedy(&mut self, state: &MdpState<P>) -> Option<usize>;
 }
 
-/// A learner of any kind.
+/// A flat learner or a hierarchy.
 pub(super) enum AnyLearner<'e, W: World> {
     Flat(Box<FlatLearner<'e, W>>),
-    Hierarchy(Box<Pupil<'e, W>>),
+    Hierarchy(Box<HierarchyLearner<'e, W>>),
 }
 
-/// An agent, and its policy as it was after the last episode.
-pub(super) struct Pupil<'e, W: World> {
+/// An agent, and its policy after the last episode.
+pub(super) struct HierarchyLearner<'e, W: World> {
     agent: Agent<'e, W>,
     finite: &'e Mdp<W::Percept>,
     policy: Policy<'e>,
 }
 
 impl<'e, W: World> AnyLearner<'e, W> {
-    /// A learner that knows nothing; `policy` is what TD(0) evaluates.
+    /// Returns an untrained learner; `policy` is the one that TD(0) evaluates.
     pub(super) fn new(
         experiment: &'e Experiment<W>,
         finite: &'e Mdp<W::Percept>,
@@ -67,7 +66,7 @@ impl<'e, W: World> AnyLearner<'e, W> {
             let learning = &experiment.scenario.learning;
             let primitives = PrimitiveSet::untrained(experiment.catalogue(), learning);
             let agent = experiment.agent(experiment.untrained(tree.clone()), primitives);
-            return Self::Hierarchy(Box::new(Pupil {
+            return Self::Hierarchy(Box::new(HierarchyLearner {
                 policy: agent.policy(),
                 agent,
                 finite,
@@ -101,8 +100,8 @@ impl<'e, W: World> AnyLearner<'e, W> {
     ) -> Result<Episode, Stopped> {
         match self {
             Self::Flat(flat) => flat.run_episode(start, step_limit, rng, gate),
-            Self::Hierarchy(pupil) => {
-                let trial = pupil.agent.run_trial(start, step_limit, rng, gate)?;
+            Self::Hierarchy(learner) => {
+                let trial = learner.agent.run_trial(start, step_limit, rng, gate)?;
                 Ok(Episode {
                     steps: trial.steps,
                     done: trial.done,
@@ -112,10 +111,10 @@ impl<'e, W: World> AnyLearner<'e, W> {
         }
     }
 
-    /// Takes note of what has been learned since.
+    /// Updates the policy with what has been learned since.
     pub(super) fn refresh(&mut self) {
-        if let Self::Hierarchy(pupil) = self {
-            pupil.policy = pupil.agent.policy();
+        if let Self::Hierarchy(learner) = self {
+            learner.policy = learner.agent.policy();
         }
     }
 }
@@ -127,10 +126,10 @@ impl<W: World> Learner<W::Percept> for AnyLearner<'_, W> {
                 let values = flat.values(&state.percept);
                 values.into_iter().fold(f32::NEG_INFINITY, f32::max)
             }
-            Self::Hierarchy(pupil) => {
+            Self::Hierarchy(learner) => {
                 let percept = state.percept.as_ref();
-                pupil.policy.look(state.state_type, percept);
-                pupil.policy.value()
+                learner.policy.look(state.state_type, percept);
+                learner.policy.value()
             }
         };
         f64::from(value)
@@ -146,11 +145,11 @@ impl<W: World> Learner<W::Percept> for AnyLearner<'_, W> {
                 };
                 Some(values.iter().enumerate().fold(0, better))
             }
-            Self::Hierarchy(pupil) => {
+            Self::Hierarchy(learner) => {
                 let percept = state.percept.as_ref();
-                pupil.policy.look(state.state_type, percept);
-                let greedy = pupil.policy.greedy()?;
-                pupil.finite.actions.iter().position(|&own| own == greedy)
+                learner.policy.look(state.state_type, percept);
+                let greedy = learner.policy.greedy()?;
+                learner.finite.actions.iter().position(|&own| own == greedy)
             }
         }
     }

@@ -1,4 +1,4 @@
-//! `events.jsonl`: one recorded event a line, append-only.
+//! `events.jsonl`: the recorded events, one a line, append-only.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -10,14 +10,13 @@ use super::checkpoint::LogPosition;
 use super::event::{EVENT_FORMAT, Event};
 use crate::files::{FileError, FileProblem};
 
-/// Longest line that is read, in bytes: a generation of the largest population that a
-/// scenario may have.
+/// Longest line that is read, in bytes. A generation of the largest allowed population fits.
 const MAX_LINE_BYTES: u64 = 1 << 26;
 
 /// Why an event log cannot be used.
 #[derive(Debug, Error)]
 pub(super) enum LogError {
-    /// The operating system refused.
+    /// The operating system refuses.
     #[error("{0}")]
     Io(#[from] io::Error),
     /// A line is not an event.
@@ -28,16 +27,16 @@ pub(super) enum LogError {
         /// What is wrong with it.
         message: String,
     },
-    /// It does not begin with the events that the checkpoint was taken after.
+    /// The log does not start with the events before the checkpoint.
     #[error(
-        "found {found}; allowed: a file that begins with the {} lines ({} bytes, CRC-32 {:08x}) \
+        "found {found}; allowed: a file that starts with the {} lines ({} bytes, CRC-32 {:08x}) \
          that the checkpoint was taken after",
         .expected.lines, .expected.bytes, .expected.crc32
     )]
     NotOfCheckpoint {
         /// What was found.
         found: String,
-        /// What the checkpoint says.
+        /// The position in the checkpoint.
         expected: LogPosition,
     },
 }
@@ -51,7 +50,7 @@ impl From<LogError> for FileProblem {
     }
 }
 
-/// Appends events to a log and knows its position.
+/// An event log that is open for appending.
 #[derive(Debug)]
 pub(super) struct Log {
     file: File,
@@ -59,7 +58,7 @@ pub(super) struct Log {
 }
 
 impl Log {
-    /// An empty log.
+    /// Creates an empty log.
     pub(super) fn create(path: &Path) -> io::Result<Self> {
         let file = OpenOptions::new()
             .create(true)
@@ -72,7 +71,7 @@ impl Log {
         })
     }
 
-    /// The log as it was at `position`; what was written later is cut off.
+    /// Opens a log and cuts off what was written after `position`.
     pub(super) fn reopen(path: &Path, position: LogPosition) -> Result<Self, LogError> {
         let mut file = OpenOptions::new().read(true).write(true).open(path)?;
         let mut hasher = crc32fast::Hasher::new();
@@ -120,7 +119,7 @@ impl Log {
         Ok(())
     }
 
-    /// Makes what was appended durable.
+    /// Waits until the appended events are on the disk.
     pub(super) fn sync(&self) -> io::Result<()> {
         self.file.sync_data()
     }
@@ -130,8 +129,8 @@ impl Log {
     }
 }
 
-/// Reads the events of a log in order. A last line without its end is dropped: the
-/// process died while it wrote.
+/// Reads the events of a log in order. An incomplete last line is ignored: the process died while
+/// it wrote the line.
 ///
 /// # Errors
 /// When the file cannot be read or a complete line is not an event.
@@ -149,8 +148,8 @@ fn events_in(path: &Path) -> Result<Vec<Event>, LogError> {
     Ok(events)
 }
 
-/// Reads the event of the next line, whose number is for errors; leaves its bytes in
-/// `line`. `None` at the end, and where a line has no end yet.
+/// Reads the event of the next line and leaves the bytes of the line in `line`; `number` is the
+/// number of the line, for errors. Returns `None` at the end and at an incomplete line.
 pub(super) fn read_event(
     reader: &mut impl BufRead,
     line: &mut Vec<u8>,
@@ -163,12 +162,12 @@ pub(super) fn read_event(
     line.clear();
     let read = reader.take(MAX_LINE_BYTES).read_until(b'\n', line)?;
     if line.last() != Some(&b'\n') {
-        return match read as u64 == MAX_LINE_BYTES {
-            true => Err(wrong(format!(
+        if read as u64 == MAX_LINE_BYTES {
+            return Err(wrong(format!(
                 "longer than allowed: {MAX_LINE_BYTES} bytes"
-            ))),
-            false => Ok(None),
-        };
+            )));
+        }
+        return Ok(None);
     }
     let event = serde_json::from_slice(line).map_err(|error| wrong(error.to_string()))?;
     if let Event::Started { format, .. } = &event

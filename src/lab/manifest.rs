@@ -1,4 +1,4 @@
-//! `run.json`: what was run, by which program, where and when.
+//! `run.json`: the scenario and the seed of a run, and how it was started.
 
 use std::path::Path;
 use std::time::SystemTime;
@@ -10,25 +10,25 @@ use crate::scenario::Scenario;
 /// Version of the format of `run.json`.
 pub const MANIFEST_FORMAT: u32 = 1;
 
-/// What a run folder holds the results of.
+/// The content of `run.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
     /// Version of this format.
     pub format: u32,
-    /// The complete scenario, defaults and settings written out.
+    /// The complete scenario, with all defaults and settings.
     pub scenario: Scenario,
     /// Seed of all random streams.
     pub seed: u64,
     /// How the run was started.
     pub started: Invocation,
-    /// How it was resumed, each time.
+    /// How it was resumed, once for each time.
     pub resumed: Vec<Invocation>,
 }
 
 impl Manifest {
-    /// The command lines that made the run what it is, as a shell takes them: that which
-    /// started it, and those which took it to another limit.
+    /// Returns the command lines that determine the result, quoted for a shell: the one that
+    /// started the run, and those that changed its generation limit.
     #[must_use]
     pub fn commands(&self) -> Vec<String> {
         let further = |resumed: &&Invocation| {
@@ -41,7 +41,7 @@ impl Manifest {
     }
 }
 
-/// One start of the program.
+/// One start of the program on a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Invocation {
@@ -53,19 +53,19 @@ pub struct Invocation {
     pub host: String,
     /// The command line.
     pub command_line: Vec<String>,
-    /// When, in UTC.
+    /// The time, in UTC.
     pub time: String,
     /// Computing threads.
     pub threads: usize,
 }
 
 impl Invocation {
-    /// This start of the program.
+    /// Returns the present start of the program.
     #[must_use]
     pub fn now(threads: usize) -> Self {
         let lossy = |text: std::ffi::OsString| text.to_string_lossy().into_owned();
         let mut command_line: Vec<_> = std::env::args_os().map(lossy).collect();
-        // Which file the program was started from says nothing about the run.
+        // The path of the program says nothing about the run.
         if let Some(program) = command_line.first_mut() {
             let name = Path::new(program)
                 .file_name()
@@ -82,7 +82,7 @@ impl Invocation {
         }
     }
 
-    /// The command line, as a shell takes it.
+    /// Returns the command line, quoted for a shell.
     #[must_use]
     pub fn command(&self) -> String {
         let words = self.command_line.iter().map(|word| shell_word(word));
@@ -96,8 +96,8 @@ pub(super) fn host_name() -> String {
     system.nodename().to_string_lossy().into_owned()
 }
 
-/// A word of a shell command line, quoted where it must be; control characters are written
-/// as bash and zsh read them, so that none is left.
+/// Returns a word of a shell command line, quoted if necessary. Control characters are escaped in
+/// the syntax of bash and zsh.
 #[must_use]
 pub fn shell_word(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:@%+,".contains(c);

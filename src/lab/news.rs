@@ -1,51 +1,51 @@
-//! What is told of a run folder that somebody looks at.
+//! What a reader of a run folder learns.
 
 use super::event::Event;
 use super::manifest::Manifest;
 
-/// What a follower tells of a run folder.
+/// A change in a run folder.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
-    /// A run is here. It is told first, and again when another run took its place or some
-    /// of it is computed anew; what was told before is void then.
+    /// The folder holds this run. Sent first, and again when another run replaced it or a resumed
+    /// run dropped events; all earlier news are void then.
     Run(Box<Manifest>),
-    /// A fact about the run.
+    /// An event of the run.
     Event(Event),
-    /// Whether the run is being computed has changed.
+    /// The liveness of the run changed.
     Liveness(Liveness),
-    /// Something in the folder cannot be read. It is tried again.
+    /// A file cannot be read; the follower tries again.
     Trouble(String),
 }
 
-/// Whether a run is being computed.
+/// Whether a process computes a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Liveness {
-    /// There is no run here yet, or no longer.
+    /// The folder holds no run, or no longer.
     Absent,
-    /// A process works on it.
+    /// A process computes it.
     Computing,
-    /// A process worked on it and gives no sign of life: it died or froze, or the folder is
-    /// out of reach.
+    /// A process computed it, but its pulse stopped: the process died or hangs, or the folder
+    /// cannot be reached.
     Silent,
-    /// Nobody works on it, and it is not over: it can be resumed.
+    /// No process computes it and it is not over; it can be resumed.
     Stopped,
     /// It is over.
     Over,
 }
 
-/// A run folder as it is at one moment.
+/// The content of a run folder at one moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// What was run.
+    /// Its `run.json`.
     pub manifest: Manifest,
-    /// The events so far, and that a checkpoint is there.
+    /// The events so far, and one for the checkpoint if there is one.
     pub events: Vec<Event>,
-    /// Whether it is being computed, as far as one look can tell.
+    /// Its liveness, as far as a single read can tell.
     pub liveness: Liveness,
 }
 
 impl Recording {
-    /// Generations lived so far.
+    /// Returns the number of generations so far.
     #[must_use]
     pub fn generations(&self) -> u64 {
         let last = self.events.iter().rev().find_map(|event| match event {

@@ -1,4 +1,4 @@
-//! The result of a run: what `run` prints and `summary.json` holds.
+//! The result of a run: `run` prints it and `summary.json` holds it.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,17 +11,17 @@ pub struct Outcome {
     pub scenario: String,
     /// Seed of the run.
     pub seed: u64,
-    /// Generations lived.
+    /// Number of generations.
     pub generations: u64,
-    /// Whether evolution converged; otherwise it ended at its limit, or was stopped.
+    /// Whether evolution converged; otherwise it reached its limit or was stopped.
     pub converged: bool,
     /// Whether the run was stopped before evolution was over.
     pub stopped: bool,
-    /// The best individual of the last generation; none before the first has lived.
+    /// The best individual of the last generation; `None` before the first generation is done.
     pub best: Option<BestIndividual>,
     /// Control steps of the run, training of the primitive subtasks included.
     pub control_steps: u64,
-    /// Wall-clock time that this process has taken, in seconds.
+    /// Wall-clock time of this process, in seconds.
     pub wall_seconds: f64,
     /// The run folder.
     pub run_dir: String,
@@ -34,8 +34,10 @@ pub struct BestIndividual {
     pub id: u64,
     /// Its hierarchy as text.
     pub tree: String,
-    /// Fitness as the mean number of time steps of a scored trial. It is the luckiest of
-    /// many; `evaluate` tells how good the structure is.
+    /// Mean time steps of a scored trial.
+    ///
+    /// It is biased by selection, since the best of many was lucky too; `evaluate` measures how
+    /// good the structure is.
     pub fitness: f64,
     /// Composite subtasks in it, the root counted.
     pub composites: usize,
@@ -46,7 +48,7 @@ pub struct BestIndividual {
 }
 
 impl BestIndividual {
-    /// The best of a generation.
+    /// Returns the best individual of a generation.
     #[must_use]
     pub fn of(record: &GenerationRecord) -> Option<Self> {
         let best: &RankedRecord = record.individuals.first()?;

@@ -1,5 +1,4 @@
-//! Primitive subtasks and individuals as a checkpoint holds them: their model in the file,
-//! and the way there and back.
+//! Primitive subtasks and individuals in a checkpoint file, and their conversion.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +13,7 @@ use crate::worlds::{Catalogue, SubtaskId};
 #[serde(deny_unknown_fields)]
 pub(super) struct PrimitiveFile {
     subtask: String,
-    /// Parameters of Q_prim, one vector an action.
+    /// Parameters of Q_prim, one vector for each action.
     actions: Vec<Vec<f32>>,
 }
 
@@ -24,9 +23,9 @@ pub(super) struct IndividualFile {
     id: u64,
     origin: Origin,
     tree: String,
-    /// In preorder.
+    /// The composite subtasks in preorder.
     composites: Vec<CompositeFile>,
-    /// Its own primitive subtasks, if each individual has its own.
+    /// Its primitive subtasks, if each individual has its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     primitives: Option<Vec<PrimitiveFile>>,
 }
@@ -43,7 +42,7 @@ struct CompositeFile {
 #[serde(deny_unknown_fields)]
 struct ChildFile {
     subtask: String,
-    /// Parameters of C~, the blocks of features one after the other.
+    /// Parameters of C~, block after block of features.
     c_tilde: Vec<f32>,
     /// Parameters of C.
     c: Vec<f32>,
@@ -188,7 +187,7 @@ impl IndividualFile {
     }
 }
 
-/// The primitive subtasks that a file lists.
+/// Returns the primitive subtasks that a file lists.
 pub(super) fn primitives(
     files: &[PrimitiveFile],
     place: &str,
@@ -235,7 +234,7 @@ impl CompositeFile {
     }
 }
 
-/// A temperature falls from its initial value to its limit.
+/// Checks that a temperature lies between its limit and its initial value.
 fn check_temperature(
     place: &str,
     found: f32,

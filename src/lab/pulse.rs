@@ -1,10 +1,9 @@
 //! `pulse.json`: the sign of life of the process that works on a run.
 //!
-//! Every second the process replaces it by how far it is; it is gone when the process
-//! gives the run up in order. Whoever follows the run learns from it what the log does not
-//! say, and that the process died when it stays the same. Followers compare one pulse
-//! with the next, never with a clock: theirs may differ. It decides nothing; who may
-//! write to a run is what `lock` says.
+//! The process replaces the file every second and removes it at the end. Followers read from it
+//! what the log does not hold, such as progress and pauses; when it stays the same, the process
+//! has died. Followers compare a pulse with the one before, never with a clock, since clocks of
+//! machines differ. The pulse decides nothing: `lock` decides who may write to a run.
 
 use std::fs;
 use std::io;
@@ -22,25 +21,25 @@ use super::manifest::host_name;
 /// Name of the file in the run folder.
 pub(super) const PULSE_FILE: &str = "pulse.json";
 
-/// Time between two beats.
+/// Time between two writes.
 pub(super) const BEAT: Duration = Duration::from_secs(1);
 
-/// What a process that works on a run says of itself.
+/// The content of the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Beat {
     /// Name of the machine.
     pub(super) host: String,
-    /// Id of the process there.
+    /// Process id on that machine.
     pub(super) process: u32,
-    /// Beats so far: no two beats of a process are the same.
+    /// Number of the beat, so that no two beats of a process are equal.
     pub(super) beat: u64,
-    /// What the run does.
+    /// What the run is doing.
     pub(super) activity: Activity,
-    /// How far the generation under way is; none before anything has been computed.
+    /// How far the present generation is; `None` before anything was computed.
     pub(super) progress: Option<Event>,
 }
 
-/// Beats until it is dropped; then the file is gone.
+/// A thread that writes the file; dropping it stops the thread and removes the file.
 #[derive(Debug)]
 pub(super) struct Pulse {
     path: PathBuf,
@@ -48,8 +47,8 @@ pub(super) struct Pulse {
 }
 
 impl Pulse {
-    /// Begins to beat in a run folder that this process has locked. A pulse that cannot
-    /// be written is missed by followers alone, so that is no error.
+    /// Starts writing in a run folder that this process has locked. A failure is ignored: only
+    /// followers need the pulse.
     pub(super) fn start(folder: &Path, controls: &Controls) -> Self {
         let path = folder.join(PULSE_FILE);
         let (stop, stopped) = bounded(0);
@@ -58,7 +57,7 @@ impl Pulse {
             .name(String::from("pulse"))
             .spawn(move || {
                 for number in 0.. {
-                    let _missed = write(&file, &beat(number, &controls));
+                    let _ignored = write(&file, &beat(number, &controls));
                     if stopped.recv_timeout(BEAT) != Err(RecvTimeoutError::Timeout) {
                         return;
                     }
@@ -75,7 +74,7 @@ impl Drop for Pulse {
     fn drop(&mut self) {
         if let Some((stop, thread)) = self.beating.take() {
             drop(stop);
-            // A pulse that panicked has stopped beating, which is all that is wanted.
+            // A panicked thread has stopped too.
             let _ = thread.join();
         }
         let _ = fs::remove_file(&self.path);
@@ -84,7 +83,7 @@ impl Drop for Pulse {
 
 fn beat(number: u64, controls: &Controls) -> Beat {
     let progress = controls.feed().progress().map(|mut event| {
-        // The count goes on between two events.
+        // Control steps are counted between two events too.
         if let Event::Progress { control_steps, .. } = &mut event {
             *control_steps = controls.control_steps();
         }
@@ -99,8 +98,8 @@ fn beat(number: u64, controls: &Controls) -> Beat {
     }
 }
 
-/// Replaces the file in one step, so that nobody reads half of it. It is not synced:
-/// after a crash of the machine there is no life to tell of.
+/// Replaces the file in one step, so that nobody reads half of it. It is not synced: after a crash
+/// of the machine it is worthless.
 fn write(path: &Path, beat: &Beat) -> io::Result<()> {
     let fresh = path.with_extension("json.new");
     fs::write(&fresh, serde_json::to_vec(beat)?)?;

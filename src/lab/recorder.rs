@@ -1,10 +1,9 @@
 //! Writes a run to its folder, on a thread of its own.
 //!
-//! Every recorded event is appended as it comes, and every kept generation written, in
-//! one step each, so that a process killed at any moment leaves nothing half there. Only
-//! `checkpoint.json` is synced, and brought up to date once a second at most: that is what
-//! a crash of the machine may lose. Checkpoints follow their events: what a checkpoint
-//! counts is on disk before it is.
+//! Each recorded event is appended and each kept generation written in one step, so a process
+//! that is killed leaves nothing half-written. Only `checkpoint.json` is synced to the disk, at most once a
+//! second: a crash of the machine loses what came later. The events before a checkpoint are
+//! synced before the checkpoint.
 
 use std::io;
 use std::sync::Arc;
@@ -24,31 +23,31 @@ use crate::files::{FileProblem, link_atomically, write_atomically, write_in_one_
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 
-/// Messages that wait for the recorder before evolution waits too: a disk that is too
-/// slow slows a run down rather than losing some of it.
+/// Messages that wait for the recorder before evolution waits too: a slow disk slows the run down,
+/// and nothing is lost.
 pub(super) const QUEUE_CAPACITY: usize = 8;
 
-/// Time between two savings of `checkpoint.json`.
+/// Shortest time between two writes of `checkpoint.json`.
 const SAVE_INTERVAL: Duration = Duration::from_secs(1);
 
-/// What the recorder is told.
+/// A message to the recorder.
 #[derive(Debug)]
 pub(super) enum Message {
     /// A recorded event.
     Event(Box<Event>),
-    /// The state after the events so far.
+    /// The state after all events so far.
     State(Arc<EvolutionState>),
-    /// A generation that has lived, and the state after it.
+    /// A generation that is done, and the state after it.
     Generation(Box<GenerationRecord>, Arc<EvolutionState>),
 }
 
 /// Why a run cannot be recorded.
 #[derive(Debug, Error)]
 pub(super) enum RecordError {
-    /// The operating system refused.
+    /// The operating system refuses.
     #[error("cannot be written: {0}")]
     Io(#[from] io::Error),
-    /// The state cannot be a checkpoint.
+    /// The state cannot be saved as a checkpoint.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
 }
@@ -70,15 +69,15 @@ pub(super) struct Recorder<'r> {
     pub(super) controls: &'r Controls,
 }
 
-/// A state that is not in `checkpoint.json` yet.
+/// A state that `checkpoint.json` does not hold yet.
 struct Pending {
     state: Arc<EvolutionState>,
     position: LogPosition,
 }
 
 impl Recorder<'_> {
-    /// Records until the senders are gone; then everything is on disk. A request asks
-    /// for the latest checkpoint now.
+    /// Records until the senders are gone, and returns when everything is on the disk. A request
+    /// saves the latest state at once.
     pub(super) fn run(
         mut self,
         messages: &Receiver<Message>,
@@ -94,7 +93,7 @@ impl Recorder<'_> {
             };
             select! {
                 recv(messages) -> message => match message {
-                    Ok(message) => pending = self.take(message)?.or(pending),
+                    Ok(message) => pending = self.record(message)?.or(pending),
                     Err(_) => {
                         self.save(pending.take())?;
                         self.log.sync()?;
@@ -113,9 +112,10 @@ impl Recorder<'_> {
         }
     }
 
-    /// Appends an event and keeps a state, which is to be saved then. A generation in
-    /// which learning has diverged is not recorded: JSON has no word for its numbers.
-    fn take(&mut self, message: Message) -> Result<Option<Pending>, RecordError> {
+    /// Records a message and returns the state that `checkpoint.json` should hold.
+    ///
+    /// A generation in which learning diverged is not recorded: JSON cannot express its numbers.
+    fn record(&mut self, message: Message) -> Result<Option<Pending>, RecordError> {
         let state = match message {
             Message::Event(event) => {
                 self.log.append(&event)?;
@@ -141,16 +141,17 @@ impl Recorder<'_> {
         Ok(Some(pending))
     }
 
-    /// Makes a state the checkpoint.
+    /// Writes a state to `checkpoint.json`.
     fn save(&self, pending: Option<Pending>) -> Result<(), RecordError> {
         let Some(pending) = pending else {
             return Ok(());
         };
         self.log.sync()?;
         let (generation, checkpoint) = (pending.state.generation, self.folder.checkpoint());
-        match self.keeps(&pending.state) {
-            true => link_atomically(&self.folder.generation(generation), &checkpoint)?,
-            false => write_atomically(&checkpoint, &self.bytes(&pending)?)?,
+        if self.keeps(&pending.state) {
+            link_atomically(&self.folder.generation(generation), &checkpoint)?;
+        } else {
+            write_atomically(&checkpoint, &self.bytes(&pending)?)?;
         }
         self.controls
             .feed()

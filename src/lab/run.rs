@@ -1,4 +1,4 @@
-//! A run: from a scenario or a checkpoint to a running evolution thread.
+//! Starts and resumes runs.
 
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
@@ -20,23 +20,23 @@ use crate::evolution::Workers;
 use crate::files::FileError;
 use crate::scenario::{PrimitiveLearning, Scenario};
 
-/// How a run is carried out; nothing here changes its result.
+/// How a run is computed and recorded. No option changes its result.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunOptions {
     /// Computing threads; 0 means one for each processor.
     pub threads: usize,
-    /// Which generations' checkpoints are kept.
+    /// The generations whose checkpoints are kept.
     pub keep: Keep,
-    /// Whether an existing run may be replaced.
+    /// Whether an existing run in the folder is replaced.
     pub force: bool,
 }
 
-/// A run under way.
+/// A run that this process computes.
 #[derive(Debug)]
 pub struct Run {
-    /// Its events, from its very first on.
+    /// Its events, including those before it was resumed.
     pub events: Receiver<Event>,
-    /// Commands to it.
+    /// The commands to it.
     pub controls: Controls,
     /// Its scenario.
     pub scenario: Scenario,
@@ -48,11 +48,10 @@ pub struct Run {
 }
 
 impl Run {
-    /// Waits for the end and returns the result. Events that nobody has taken are
-    /// given up.
+    /// Waits for the end and returns the result. Unread events are dropped.
     ///
     /// # Errors
-    /// When the run could not be recorded.
+    /// When the run cannot be recorded.
     pub fn join(self) -> Result<Outcome, RunError> {
         drop(self.events);
         self.thread.join().unwrap_or(Err(RunError::Panicked))
@@ -62,7 +61,7 @@ impl Run {
 /// Starts a run in a new folder.
 ///
 /// # Errors
-/// When the scenario cannot be made ready or the folder cannot be made.
+/// When the scenario cannot be made ready or the folder cannot be created.
 pub fn start(
     scenario: Scenario,
     seed: u64,
@@ -92,8 +91,8 @@ pub fn start(
     })
 }
 
-/// Goes on with the run in `path`, from its checkpoint, or from its start where it has
-/// none; to another generation limit if one is given.
+/// Resumes the run in `path` from its checkpoint, or from its start if it has none. `generations`
+/// sets another generation limit.
 ///
 /// # Errors
 /// When the folder holds no usable run, or another process works on it.
@@ -111,8 +110,7 @@ pub fn resume(
             .check_origin(&manifest.scenario, manifest.seed)
             .map_err(|message| FolderError::from(FileError::new(folder.manifest(), message)))?;
     }
-    // The limit is that of run.json: a run that dies before its first checkpoint with a
-    // new limit must not forget it.
+    // The limit is written to run.json, so that it survives a crash before the next checkpoint.
     if let Some(limit) = generations {
         let lived = checkpoint
             .as_ref()
@@ -144,21 +142,21 @@ pub fn resume(
 fn workers(scenario: &Scenario, options: &RunOptions) -> Result<Workers, RunError> {
     let threads = match scenario.learning.primitive_learning {
         PrimitiveLearning::Frozen | PrimitiveLearning::Individual => options.threads,
-        // All individuals teach one copy, in turn.
+        // All individuals train one shared copy, one after the other.
         PrimitiveLearning::Shared => 1,
     };
     Workers::new(threads).map_err(|error| RunError::Threads(error.to_string()))
 }
 
-/// Where a run is kept.
+/// Where a run is recorded.
 enum Place {
-    /// In a folder that is made when the scenario has proved usable.
+    /// In a folder that is created after the scenario was found usable.
     New {
         path: PathBuf,
         manifest: Box<Manifest>,
         force: bool,
     },
-    /// In an existing run folder, whose manifest changes when all has proved usable.
+    /// In an existing run folder, whose manifest is written after everything was found usable.
     Open {
         folder: RunFolder,
         manifest: Box<Manifest>,
@@ -166,7 +164,7 @@ enum Place {
 }
 
 impl Place {
-    /// The folder, and what is to become of its manifest.
+    /// Returns the folder, and the manifest that has yet to be written.
     fn folder(self) -> Result<(RunFolder, Option<Box<Manifest>>), FolderError> {
         match self {
             Self::New {
@@ -179,7 +177,7 @@ impl Place {
     }
 }
 
-/// A run that is ready to begin.
+/// What a run starts with.
 struct Preparation {
     scenario: Scenario,
     seed: u64,
@@ -189,7 +187,7 @@ struct Preparation {
     checkpoint: Option<Checkpoint>,
 }
 
-/// Reads everything that can be wrong, then starts the evolution thread.
+/// Checks everything that can be wrong, then starts the evolution thread.
 fn begin(preparation: Preparation) -> Result<Run, RunError> {
     let Preparation {
         scenario,
@@ -221,7 +219,7 @@ fn begin(preparation: Preparation) -> Result<Run, RunError> {
             Vec::new(),
         ),
     };
-    // Written last: a refused resume leaves no trace.
+    // Written last, so that a refused resume changes nothing.
     if let Some(manifest) = manifest {
         folder.write_manifest(&manifest)?;
     }

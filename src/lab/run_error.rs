@@ -13,12 +13,12 @@ pub enum SetupError {
     /// Its world cannot be built.
     #[error("{0}")]
     World(Problem),
-    /// Its first hierarchies cannot be used.
+    /// A hierarchy of its initial population cannot be used.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
 }
 
-/// Why a run cannot begin, or had to end.
+/// Why a run cannot start, or ended early.
 #[derive(Debug, Error)]
 pub enum RunError {
     /// The scenario cannot be made ready.
@@ -30,18 +30,18 @@ pub enum RunError {
     /// A file of the run cannot be read or written, or is not what it should be.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The limit of a resumed run is not above what it has lived.
-    #[error("--generations: found {found}; allowed: {lived} (the generations lived) to 100000")]
+    /// The new generation limit of a resumed run is below the generations that it has.
+    #[error("--generations: found {found}; allowed: {lived} (the generations so far) to 100000")]
     Generations {
-        /// The limit asked for.
+        /// The new limit.
         found: u64,
-        /// Generations lived.
+        /// Generations that the run has.
         lived: u64,
     },
-    /// The operating system gives no threads.
+    /// The operating system refuses to start a thread.
     #[error("cannot start threads: {0}")]
     Threads(String),
-    /// A thread panicked: a defect of this program.
+    /// A thread panicked, which is a defect of this program.
     #[error("a thread of the run panicked; this is a defect of maxq-lab, please report it")]
     Panicked,
 }

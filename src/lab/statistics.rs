@@ -1,17 +1,17 @@
-//! Means with intervals.
+//! Means, standard errors and confidence intervals.
 
 use serde::Serialize;
 
-/// A mean with its 95 % confidence interval.
+/// A mean and its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mean {
     /// The mean.
     pub mean: f64,
-    /// Half the width of the interval, by Student's t; `null` for a single number.
+    /// Half the width of the interval (Student's t); `None` for a single number.
     pub half_width: Option<f64>,
 }
 
-/// The mean of some numbers; `None` of none.
+/// Returns the mean of `numbers` with its interval; `None` if there are none.
 #[must_use]
 pub fn mean(numbers: &[f64]) -> Option<Mean> {
     let n = numbers.len() as f64;
@@ -25,14 +25,15 @@ pub fn mean(numbers: &[f64]) -> Option<Mean> {
     Some(Mean { mean, half_width })
 }
 
-pub(super) fn plain_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+pub(super) fn mean_of(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let n = values.len() as f64;
     values.sum::<f64>() / n
 }
 
-/// Standard error of the mean of grouped values, from the variance components of a
-/// one-way random-effects model; a negative component counts as none. With one group
-/// the groups' variance cannot be known and is left out.
+/// Returns the standard error of the mean of `(group, value)` pairs; `None` for fewer than two.
+///
+/// It follows a one-way random-effects model; a negative variance component counts as 0. With a
+/// single group, the variance between groups is unknown and left out.
 pub(super) fn standard_error(values: &[(usize, f64)]) -> Option<f64> {
     let n = values.len() as f64;
     if values.len() < 2 {
@@ -66,9 +67,10 @@ pub(super) fn standard_error(values: &[(usize, f64)]) -> Option<f64> {
     Some(simple.max(grouped).sqrt())
 }
 
-/// The 97.5 % quantile of Student's t distribution, by the expansion of Cornish and Fisher
-/// in 1 over the degrees of freedom (Abramowitz and Stegun 26.7.5), which is right to 0.01
-/// from four degrees on; below from their Table 26.10.
+/// Returns the 97.5 % quantile of Student's t distribution.
+///
+/// From four degrees of freedom on it uses the Cornish-Fisher expansion (Abramowitz and Stegun
+/// 26.7.5), which is accurate to 0.01; below, their Table 26.10.
 fn student_t(degrees: f64) -> f64 {
     const FEW: [f64; 3] = [12.706, 4.303, 3.182];
     if let Some(&quantile) = FEW.get(degrees as usize - 1) {

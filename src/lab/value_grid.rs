@@ -1,4 +1,4 @@
-//! Values of a finite world laid out as its cells are.
+//! Values of a finite world, laid out as its cells.
 
 use serde::Serialize;
 
@@ -6,20 +6,20 @@ use super::learn::Learned;
 use crate::random::{Purpose, stream};
 use crate::worlds::scene::Scenic;
 
-/// Values in the cells of a world, in one case of what is not the agent's place.
+/// Values in the cells of a world, for one variant of its states.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ValueGrid {
-    /// What is the case.
+    /// The variant, such as `from R to B`.
     pub case: String,
-    /// Values that the first repeat has learned, row by row from the top; `null` where
-    /// the agent cannot be.
+    /// The values learned by the first repeat, row by row from the top; `None` where the agent
+    /// cannot be.
     pub learned: Vec<Vec<Option<f64>>>,
     /// The exact values.
     pub exact: Vec<Vec<Option<f64>>>,
 }
 
-/// The values of all states that a world can show, one grid for each of its variants;
-/// none where it does not consist of cells.
+/// Returns learned and exact values, one grid for each variant of the world; none where the world
+/// has no cells.
 pub fn value_grids<W: Scenic>(world: &W, learned: &Learned) -> Vec<ValueGrid> {
     let (Some(finite), Some([columns, rows])) = (world.mdp(), world.scenery().grid) else {
         return Vec::new();
@@ -29,7 +29,7 @@ pub fn value_grids<W: Scenic>(world: &W, learned: &Learned) -> Vec<ValueGrid> {
         .repeats
         .first()
         .map_or(&none, |course| &course.values);
-    // No state of a finite world depends on it.
+    // A state of a finite world does not depend on the random stream.
     let mut rng = stream(0, 0, 0, Purpose::PolicyMap);
     let mut number = |variant, column: usize, row: usize| {
         let at = [column as f64 + 0.5, (rows - row) as f64 - 0.5];

@@ -1,8 +1,7 @@
-//! Following a run that another process computes, and reading one that nobody does.
+//! Watches a run folder from a thread of its own.
 //!
-//! A follower only reads: it takes no lock and leaves no trace, so that it may follow a run
-//! of another machine in a shared folder. It polls, because that is what works over
-//! every kind of share.
+//! Watching only reads and takes no lock, so it works for a run on another machine in a shared
+//! folder. It polls, because that works on every kind of network file system.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -14,22 +13,22 @@ use super::follower::Follower;
 use super::news::News;
 use super::run_error::RunError;
 
-/// News that wait for the reader before the follower waits too.
+/// News that the channel to the reader holds before the follower waits.
 const CHANNEL_CAPACITY: usize = 256;
 
-/// A run folder that is being followed, until this is dropped.
+/// A watched run folder; watching ends when this is dropped.
 #[derive(Debug)]
 pub struct Watch {
-    /// What is told, from the very first event of the run on.
+    /// The news, from the first event of the run on.
     pub news: Receiver<News>,
     _stop: Sender<()>,
 }
 
 impl Watch {
-    /// Follows the run in a folder, which need not be there yet, and looks every `interval`.
+    /// Watches the run in a folder, which need not exist yet, and reads it every `interval`.
     ///
     /// # Errors
-    /// When there can be no thread.
+    /// When the operating system refuses to start a thread.
     pub fn start(folder: &Path, interval: Duration) -> Result<Self, RunError> {
         let (sender, news) = bounded(CHANNEL_CAPACITY);
         let (stop, stopped) = bounded::<()>(0);
@@ -39,7 +38,7 @@ impl Watch {
             .spawn(move || {
                 let mut follower = Follower::of(&folder);
                 loop {
-                    for news in follower.look(Instant::now()) {
+                    for news in follower.news(Instant::now()) {
                         if sender.send(news).is_err() {
                             return;
                         }

@@ -1,4 +1,4 @@
-//! The evolution thread of a run: the loop of Algorithm 3.1, with its events and commands.
+//! The evolution thread of a run: the loop of Thesis Algorithm 3.1 with its events and commands.
 
 use std::sync::Arc;
 use std::thread;
@@ -45,7 +45,7 @@ struct WorldRun<'w, W: World> {
     state: Option<EvolutionState>,
 }
 
-/// How far evolution came.
+/// How far evolution got.
 struct Progress {
     generations: u64,
     converged: bool,
@@ -54,7 +54,7 @@ struct Progress {
     over: bool,
 }
 
-/// Closes the stream of events however the thread ends.
+/// Closes the feed when it is dropped, even if the thread panics.
 struct Closing<'c>(&'c Controls);
 
 impl Drop for Closing<'_> {
@@ -113,8 +113,8 @@ impl Work {
             wall_seconds: started.elapsed().as_secs_f64(),
             run_dir: folder.clone(),
         };
-        // A run that was over before keeps the time that it took.
-        if progress.over && !is_summed_up(&self.folder, &outcome) {
+        // Resuming a run that was over keeps the wall-clock time in its summary.
+        if progress.over && !has_summary(&self.folder, &outcome) {
             let written = serde_json::to_vec_pretty(&outcome)
                 .map_err(std::io::Error::from)
                 .and_then(|bytes| write_atomically(&self.folder.summary(), &bytes));
@@ -125,8 +125,7 @@ impl Work {
 }
 
 impl<W: World> WorldRun<'_, W> {
-    /// The loop of Algorithm 3.1. Ends early when the run is stopped or the recorder
-    /// has failed and gone.
+    /// Evolves to the end, or until the run is stopped or the recorder has failed.
     fn evolve(&self, past: Vec<Event>, recorder: Sender<Message>) -> Progress {
         let mut progress = Progress {
             generations: 0,
@@ -141,16 +140,12 @@ impl<W: World> WorldRun<'_, W> {
             }
             self.controls.feed().send(event);
         }
-        // An error means that the run was stopped; the progress so far says how far it came.
-        let _stopped = self.evolve_on(&mut progress, &recorder);
+        // After an early end, `progress` says how far evolution got.
+        let _stopped = self.advance(&mut progress, &recorder);
         progress
     }
 
-    fn evolve_on(
-        &self,
-        progress: &mut Progress,
-        recorder: &Sender<Message>,
-    ) -> Result<(), Stopped> {
+    fn advance(&self, progress: &mut Progress, recorder: &Sender<Message>) -> Result<(), Stopped> {
         let (seed, workers) = (self.seed, self.workers);
         let scenario = &self.experiment.scenario;
         let controls = self.controls;
@@ -181,14 +176,14 @@ impl<W: World> WorldRun<'_, W> {
                     scenario: scenario.name.clone(),
                     seed,
                 };
-                self.fact(started, recorder)?;
+                self.send_recorded(started, recorder)?;
                 show(0, 0);
                 Evolution::begin(self.experiment, workers, seed, controls.gate())?
             }
         };
-        // A resumed run too: its limit may be new, and the process before may have died
-        // between saving this state and keeping it.
-        self.keep(&evolution, recorder)?;
+        // A resumed run saves its state too: the limit may be new, and the process before may
+        // have died before it kept the checkpoint of this generation.
+        self.save(&evolution, recorder)?;
         progress.note(evolution.state());
         while !evolution.is_over() {
             controls.gate().pass(0)?;
@@ -200,17 +195,18 @@ impl<W: World> WorldRun<'_, W> {
             let (record, state) = (Box::new(record), Arc::clone(evolution.state()));
             let message = Message::Generation(record.clone(), state);
             recorder.send(message).map_err(|_| Stopped)?;
-            // Before the event: who hears of a generation can look at its individuals.
+            // Before the event, so that its receiver finds the individuals of the generation.
             controls.feed().set_latest(evolution.state());
             controls.feed().send(Event::Generation(record));
             controls.generation_over();
         }
-        let ending = match progress.converged {
-            true => Ending::Converged,
-            false => Ending::GenerationLimit,
+        let ending = if progress.converged {
+            Ending::Converged
+        } else {
+            Ending::GenerationLimit
         };
         let generations = progress.generations;
-        self.fact(
+        self.send_recorded(
             Event::Ended {
                 generations,
                 ending,
@@ -221,22 +217,22 @@ impl<W: World> WorldRun<'_, W> {
         Ok(())
     }
 
-    /// A run that was over and goes on is over no longer: whatever becomes of this process,
-    /// the result of before must not count as that of the run. Where it cannot be removed
-    /// it will be written anew at the end.
+    /// Removes the summary of a run that was over and is resumed with a higher limit: it must not
+    /// count as the result, even if this process dies. A failure is ignored, since the summary is
+    /// written again at the end.
     fn forget_summary(&self) {
-        let _gone = std::fs::remove_file(self.folder.summary());
+        let _ignored = std::fs::remove_file(self.folder.summary());
     }
 
-    /// Records an event and tells it.
-    fn fact(&self, event: Event, recorder: &Sender<Message>) -> Result<(), Stopped> {
+    /// Sends a recorded event to the recorder, then to the reader.
+    fn send_recorded(&self, event: Event, recorder: &Sender<Message>) -> Result<(), Stopped> {
         let message = Message::Event(Box::new(event.clone()));
         recorder.send(message).map_err(|_| Stopped)?;
         self.controls.feed().send(event);
         Ok(())
     }
 
-    fn keep(
+    fn save(
         &self,
         evolution: &Evolution<'_, W>,
         recorder: &Sender<Message>,
@@ -247,9 +243,8 @@ impl<W: World> WorldRun<'_, W> {
     }
 }
 
-/// Whether `summary.json` holds this result, in whatever time it was computed and
-/// wherever the folder was then.
-fn is_summed_up(folder: &RunFolder, outcome: &Outcome) -> bool {
+/// Returns whether `summary.json` holds this result; wall-clock time and path may differ.
+fn has_summary(folder: &RunFolder, outcome: &Outcome) -> bool {
     let text = read_text(&folder.summary(), MAX_SUMMARY_BYTES).ok();
     let written: Option<Outcome> = text.and_then(|text| serde_json::from_str(&text).ok());
     written.is_some_and(|written| {

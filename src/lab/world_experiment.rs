@@ -24,8 +24,8 @@ use crate::scenario::Scenario;
 use crate::worlds::scene::{Scenery, Scenic};
 use crate::worlds::{Catalogue, Probe, SubtaskId, WorldFn};
 
-/// Makes `scenario` ready, in whichever world it is. Where only subtasks and hierarchies
-/// matter, any seed will do.
+/// Makes `scenario` ready, whichever its world. A caller that only reads subtasks and hierarchies
+/// may pass any seed.
 ///
 /// # Errors
 /// When the scenario's world or its hierarchies cannot be built.
@@ -36,10 +36,10 @@ pub fn experiment(scenario: Scenario, seed: u64) -> Result<Box<dyn AnyExperiment
         .map_err(|problem| SetupError::World(problem.within("world")))?
 }
 
-/// Makes `scenario` ready for as long as the process lives.
+/// Makes `scenario` ready; the experiment is never freed.
 ///
-/// Rollouts borrow from their experiment, and a dashboard hands them around freely. It
-/// opens few runs, so their experiments stay.
+/// Rollouts borrow from their experiment, and a dashboard passes both around freely. It opens few
+/// runs, so what stays in memory is small.
 ///
 /// # Errors
 /// When the scenario's world or its hierarchies cannot be built.
@@ -50,7 +50,8 @@ pub fn lasting_experiment(
     experiment(scenario, seed).map(|experiment| &*Box::leak(experiment))
 }
 
-/// Hides the type of the world of an experiment.
+/// Hides the type of the world of an experiment. The dashboard and other callers that take an
+/// [`AnyExperiment`] then work with a world that the program does not know.
 pub fn any_experiment<W: Scenic + 'static>(
     experiment: Experiment<W>,
     seed: u64,

@@ -154,7 +154,7 @@ pub(super) fn check_evaluation(
     let plan = study.plan.reevaluation;
     let repeats = &found.evaluation.repeats;
     let trials = repeats.iter().map(|repeat| repeat.steps.len()).max();
-    let sets = repeats.iter().map(|repeat| repeat.bank + 1).max();
+    let sets = repeats.iter().map(|repeat| repeat.primitive_set + 1).max();
     let planned_sets = plan.primitive_sets.min(plan.repeats);
     let numbers = [
         ("warmup", found.warmup as u64, plan.warmup as u64),

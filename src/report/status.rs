@@ -228,7 +228,7 @@ impl Followed {
 
     fn look(&mut self, now: Instant) -> Result<(), RunError> {
         let mut all = Vec::new();
-        let looked = self.follower.try_look(now, &mut all);
+        let looked = self.follower.update(now, &mut all);
         for news in all {
             match news {
                 News::Run(_) => (self.generations, self.best_steps) = (0, Vec::new()),

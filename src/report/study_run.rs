@@ -180,7 +180,7 @@ impl StudyRun<'_> {
             warmup: plan.warmup,
             trials: plan.trials,
             repeats: plan.repeats,
-            banks: plan.primitive_sets,
+            primitive_sets: plan.primitive_sets,
         };
         let seed = evaluation_seed(&self.run);
         let experiment = experiment(scenario, seed)?;

@@ -1,4 +1,4 @@
-//! The populations of a run, of any generation that was kept.
+//! The populations of a run.
 
 use std::collections::VecDeque;
 use std::fs;
@@ -13,24 +13,24 @@ use crate::lab::checkpoint::Checkpoint;
 use crate::lab::controls::Controls;
 use crate::lab::experiment::AnyExperiment;
 
-/// Populations that are held ready.
+/// Populations that are cached.
 const CAPACITY: usize = 8;
 
-/// Why a population cannot be shown.
+/// Why a population cannot be read.
 #[derive(Debug, Error)]
 pub enum ArchiveError {
-    /// The generation was not kept.
+    /// The checkpoint of the generation was not kept.
     #[error(
         "generation {generation}: its individuals were not kept; allowed: {allowed} (a run keeps \
          what --keep says, and its latest generation)"
     )]
     NotKept {
-        /// The generation asked for.
+        /// The requested generation.
         generation: u64,
-        /// Those that were.
+        /// The generations that were kept, in words.
         allowed: String,
     },
-    /// There is no population yet.
+    /// The run has no population yet.
     #[error("{folder}: no generation has been saved yet")]
     Nothing {
         /// The run folder.
@@ -41,18 +41,18 @@ pub enum ArchiveError {
     File(#[from] FileError),
 }
 
-/// The populations of one run, read when they are asked for.
+/// The populations of one run, read on demand.
 pub struct Archive {
     experiment: &'static dyn AnyExperiment,
     folder: PathBuf,
     live: Option<Controls>,
-    /// The latest used first.
+    /// The most recently used first.
     cache: VecDeque<Arc<EvolutionState>>,
 }
 
 impl Archive {
-    /// The archive of the run in `folder`; of a run in this process if its controls are
-    /// given.
+    /// Returns the archive of the run in `folder`. A run of this process passes its controls as
+    /// `live`, so that its latest population is taken from memory.
     #[must_use]
     pub fn new(
         experiment: &'static dyn AnyExperiment,
@@ -67,7 +67,7 @@ impl Archive {
         }
     }
 
-    /// The latest population.
+    /// Returns the latest population.
     ///
     /// # Errors
     /// When there is none, or it cannot be read.
@@ -81,7 +81,7 @@ impl Archive {
         })
     }
 
-    /// The population after a generation.
+    /// Returns the population after a generation.
     ///
     /// # Errors
     /// When it was not kept, or cannot be read.
@@ -111,7 +111,7 @@ impl Archive {
         if let Some(state) = kept {
             return Ok(state);
         }
-        // The latest generation is in the checkpoint, kept or not.
+        // checkpoint.json holds the latest generation even if it was not kept.
         let latest = self.read(&self.folder.join("checkpoint.json"))?;
         let fits = latest.filter(|state| state.generation == generation);
         fits.ok_or_else(|| ArchiveError::NotKept {
@@ -120,7 +120,7 @@ impl Archive {
         })
     }
 
-    /// The population in a file, if there is a file.
+    /// Reads the population in a file; returns `None` if there is no file.
     fn read(&self, path: &Path) -> Result<Option<EvolutionState>, ArchiveError> {
         let wrong = |error| FileError::new(path, error);
         let Some(checkpoint) = Checkpoint::read(path).map_err(wrong)? else {
@@ -135,7 +135,7 @@ impl Archive {
     }
 }
 
-/// The generations in a folder in words.
+/// Returns the generations in a folder in words.
 fn allowed(folder: &Path) -> String {
     let names = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut kept: Vec<u64> = names

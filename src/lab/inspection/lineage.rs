@@ -1,31 +1,30 @@
-//! Where an individual comes from.
+//! The ancestors of an individual.
 
 use std::collections::BTreeMap;
 
 use crate::evolution::{GenerationRecord, Origin};
 
-/// An individual as it came into the world.
+/// An individual in its first generation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ancestor {
     /// Its id.
     pub id: u64,
-    /// The generation that it was made for.
+    /// Its first generation.
     pub born: u64,
-    /// The last generation that it lived in, as far as is known.
+    /// Its last generation in the records.
     pub last_seen: u64,
-    /// How it was made: what was inherited from whom, and what was reset.
+    /// How it was created: what it inherited from whom, and what was reset.
     pub origin: Origin,
-    /// Its hierarchy as text; it never changes.
+    /// Its hierarchy as text, which never changes.
     pub tree: String,
     /// Its rank in its first generation, from 1.
     pub rank: usize,
-    /// Its fitness there: time steps over the scored trials.
+    /// Its fitness there: time steps of all scored trials.
     pub fitness_steps: u64,
 }
 
 impl Ancestor {
-    /// The individuals that it was made of: the one that gave the tree from the root
-    /// down comes first.
+    /// Returns the ids of its parents. The parent that gave the tree with the root comes first.
     #[must_use]
     pub fn parents(&self) -> Vec<u64> {
         match &self.origin {
@@ -38,18 +37,18 @@ impl Ancestor {
     }
 }
 
-/// All ancestors of an individual.
+/// An individual and its ancestors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lineage {
     /// The individual.
     pub id: u64,
-    /// It and all its ancestors, by id; parents have smaller ids than their children.
+    /// The individual and all its ancestors, by id. Parents have smaller ids than their children.
     pub ancestors: BTreeMap<u64, Ancestor>,
 }
 
 impl Lineage {
-    /// The line along which the tree was handed down from the root: the individual,
-    /// the parent whose tree it received, and so on back to the start.
+    /// Returns the line of descent of the root: the individual, the parent that gave its root, and so on
+    /// back to the start.
     pub fn line(&self) -> impl Iterator<Item = &Ancestor> {
         let first = self.ancestors.get(&self.id);
         std::iter::successors(first, |ancestor| {
@@ -59,8 +58,10 @@ impl Lineage {
     }
 }
 
-/// The lineage of an individual from the records of the generations up to one that it
-/// lived in; `None` if it is in none of them. Where records are missing, it ends.
+/// Returns the lineage of an individual; `None` if no record holds it.
+///
+/// `records` are those of the generations up to one that holds the individual. Where records are
+/// missing, the lineage ends.
 #[must_use]
 pub fn lineage<'r>(
     records: impl IntoIterator<Item = &'r GenerationRecord>,

@@ -1,5 +1,5 @@
-//! Taking individuals apart: what they do, step by step, what they have learned, what
-//! they would do elsewhere, where they come from.
+//! Inspection of individuals: what they do step by step, what they have learned, what they would
+//! do elsewhere in the arena, and which ancestors they have.
 //!
 //! An [`Archive`] holds the individuals of any generation of a run that was kept; an
 //! [`AnyExperiment`](super::AnyExperiment) inspects them. Rollouts act on copies and have
@@ -36,7 +36,7 @@ pub struct InspectedIndividual<'s> {
 }
 
 impl<'s> InspectedIndividual<'s> {
-    /// The individual at an index of a state, 0 being the best.
+    /// Returns the individual at an index of a state; 0 is the best.
     #[must_use]
     pub fn at(state: &'s EvolutionState, index: usize) -> Option<Self> {
         let individual = state.individuals.get(index)?;
@@ -46,7 +46,7 @@ impl<'s> InspectedIndividual<'s> {
         })
     }
 
-    /// The individual with this id.
+    /// Returns the individual with this id.
     #[must_use]
     pub fn with_id(state: &'s EvolutionState, id: u64) -> Option<Self> {
         let mut individuals = state.individuals.iter();

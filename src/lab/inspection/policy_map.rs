@@ -1,55 +1,55 @@
-//! What an individual would do all over the arena.
+//! Maps of what an individual would do at each place of the arena.
 
 use crate::learning::Policy;
 use crate::random::{Purpose, Stream, stream};
 use crate::worlds::scene::{Mark, Scenic};
 use crate::worlds::{StateType, SubtaskId};
 
-/// Noisy readings that a cell is averaged over.
+/// Noisy readings over which a cell is averaged.
 const SAMPLES: usize = 4;
 
-/// For what a map is made.
+/// The states that a map shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapView {
     /// Heading of the agent in radians.
     pub heading: f64,
-    /// Index of one of the experiment's variants.
+    /// Index into [`AnyExperiment::variants`](crate::lab::AnyExperiment::variants).
     pub variant: usize,
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: usize,
-    /// Cells along y.
+    /// Number of cells along y.
     pub rows: usize,
 }
 
 /// What an individual would do at a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolicyCell {
-    /// The type of the state there.
+    /// Type of the state there.
     pub state_type: StateType,
-    /// The primitive subtask that it most probably ends in.
+    /// The primitive subtask that it most probably selects.
     pub primitive: SubtaskId,
-    /// With which probability.
+    /// The probability of selecting it.
     pub probability: f64,
-    /// V(root).
+    /// V of the root.
     pub value: f32,
-    /// The primitive subtask and its action that it would choose without exploring.
+    /// The primitive subtask and its action that it would choose without exploration.
     pub greedy: Option<(SubtaskId, usize)>,
 }
 
-/// What an individual would do at the centres of equal cells.
+/// What an individual would do at the centres of a grid of cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolicyMap {
-    /// For what it was made.
+    /// The states that it shows.
     pub view: MapView,
-    /// Row by row, from the largest y down, as it is drawn; `None` where the agent
-    /// cannot be or has nothing to do.
+    /// The cells row by row, with the largest y first; `None` where the agent cannot be or its
+    /// task is done.
     pub cells: Vec<Option<PolicyCell>>,
-    /// What can move or go, where it is in this variant.
+    /// The movable objects, where they are in this variant.
     pub marks: Vec<Mark>,
 }
 
 impl PolicyMap {
-    /// The cell in a column and a row from the top.
+    /// Returns the cell in a column and a row, counted from the top left.
     #[must_use]
     pub fn cell(&self, column: usize, row: usize) -> Option<&PolicyCell> {
         if column >= self.view.columns {
@@ -58,7 +58,7 @@ impl PolicyMap {
         self.cells.get(row * self.view.columns + column)?.as_ref()
     }
 
-    /// The smallest and the largest value in it.
+    /// Returns the smallest and the largest value of its cells.
     #[must_use]
     pub fn values(&self) -> Option<[f32; 2]> {
         let values = self.cells.iter().flatten().map(|cell| cell.value);
@@ -77,7 +77,7 @@ pub(in crate::lab) fn policy_map<W: Scenic>(
 ) -> PolicyMap {
     let extent = world.scenery().extent;
     let MapView { columns, rows, .. } = view;
-    // The same noise everywhere: what differs from cell to cell is the place.
+    // All cells get the same noise, so that they differ by their places alone.
     let rng = stream(seed, 0, 0, Purpose::PolicyMap);
     let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
     let cells = cells.map(|[column, row]| {

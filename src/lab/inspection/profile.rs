@@ -1,55 +1,55 @@
-//! Learned values, drawn over the inputs that they depend on.
+//! Learned values as curves over the inputs that they depend on.
 
 use crate::hierarchy::Tree;
 use crate::learning::{Choice, Policy};
 use crate::worlds::scene::{Scale, Scenic, Sweep};
 use crate::worlds::{Kind, StateType, SubtaskId};
 
-/// What is drawn.
+/// The quantity that a profile shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Quantity {
-    /// Q_prim of a primitive subtask's actions.
+    /// Q_prim of the actions of a primitive subtask.
     ActionValue,
-    /// C~ + V, what a composite subtask chooses by.
+    /// C~ + V of the children of a composite subtask, by which it chooses.
     Preference,
-    /// C~ of its children.
+    /// C~ of the children.
     CTilde,
-    /// C of its children.
+    /// C of the children.
     C,
-    /// V of its children.
+    /// V of the children.
     Value,
-    /// The probability of its children.
+    /// The probability of choosing each child.
     Probability,
 }
 
-/// One curve, or one sheet over two dimensions.
+/// One curve, or one surface over two inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// The action or the child.
+    /// Name of the action or child.
     pub label: String,
-    /// The child's node, for the children of a composite subtask.
+    /// Node of the child; `None` for an action.
     pub node: Option<usize>,
     /// The values, row by row of the sweep.
     pub values: Vec<f32>,
 }
 
-/// Learned values of a node over some inputs.
+/// Learned values of a node over one or two inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// What is drawn.
+    /// The quantity.
     pub quantity: Quantity,
-    /// The type of the states; values of primitive subtasks are the same in all.
+    /// Type of the states. The values of a primitive subtask are the same for all types.
     pub state_type: StateType,
-    /// From column to column.
+    /// The input that changes from column to column.
     pub across: Scale,
-    /// From row to row, if there is more than one row.
+    /// The input that changes from row to row, if there is more than one row.
     pub down: Option<Scale>,
-    /// One curve an action or a child that can act.
+    /// One curve for each action, or for each child that can act.
     pub curves: Vec<Curve>,
 }
 
-/// All profiles of a node: for every state type that it can act in, every sweep and
-/// every quantity.
+/// Returns all profiles of a node: one for each state type in which it can act, each sweep and each
+/// quantity.
 pub(in crate::lab) fn profiles<W: Scenic>(
     world: &W,
     tree: &Tree,
@@ -97,10 +97,10 @@ fn action_profiles<W: Scenic>(
         .collect()
 }
 
-/// Reads a quantity off a choice.
+/// Returns a quantity of a choice.
 type Read = fn(&Choice) -> f32;
 
-/// What is drawn of a composite subtask.
+/// The quantities of a composite subtask.
 const OF_CHOICES: [(Quantity, Read); 5] = [
     (Quantity::Preference, Choice::preference),
     (Quantity::CTilde, |choice| choice.c_tilde),

@@ -1,4 +1,4 @@
-//! An individual that acts for somebody to watch.
+//! Rollouts: an individual acts while somebody watches.
 
 use std::collections::VecDeque;
 
@@ -9,77 +9,79 @@ use crate::learning::{Agent, Explanation, Observer, Trial};
 use crate::random::Stream;
 use crate::worlds::scene::{Scenic, Snapshot};
 
-/// Trials that are remembered.
+/// Trials that the status remembers.
 const HISTORY: usize = 256;
-/// Places of the present trial that are remembered.
+/// Places of the present trial that the status remembers.
 const TRAIL: usize = 4096;
 
-/// A copy of an individual that acts and learns, one trial after the other.
+/// A copy of an individual that acts and learns, trial after trial.
 ///
-/// A trial that is over stays to be looked at; the next step begins the next trial.
+/// After the end of a trial its last state stays; the next step begins the next trial.
 pub trait Rollout: Send {
-    /// One time step, with everything that decided it and everything that it changed;
-    /// `None` if the hierarchy can do nothing, which the typing rules exclude.
+    /// Advances by one time step and returns everything that decided it and that it changed.
+    ///
+    /// Returns `None` if the hierarchy can do nothing, which the typing rules exclude.
     fn step(&mut self) -> Option<StepTrace>;
 
-    /// Some time steps, as many as [`Rollout::step`] would take, and to the same end.
+    /// Advances by `steps` time steps, with the same result as that many calls of
+    /// [`Rollout::step`], but faster.
     fn advance(&mut self, steps: u32);
 
-    /// Gives the present trial up and begins the next.
+    /// Abandons the present trial and begins the next.
     fn begin_trial(&mut self);
 
-    /// What the present state looks like.
+    /// Returns what the present state looks like.
     fn snapshot(&self) -> Snapshot;
 
-    /// How it is getting on.
+    /// Returns the status.
     fn status(&self) -> &RolloutStatus;
 
-    /// The present temperature of each node; `None` for primitive ones.
+    /// Returns the temperature of each node; `None` for primitive subtasks.
     fn temperatures(&self) -> Vec<Option<f32>>;
 
-    /// What the agent would do in each cell, with what it has learned so far, while all but
-    /// its place is as it is now; `None` where the world has no cells.
+    /// Returns what the agent would do in each cell with its present knowledge, in the present
+    /// variant; `None` where the world has no cells.
     fn cells(&self) -> Option<PolicyMap>;
 }
 
-/// How a rollout is getting on.
+/// The status of a rollout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RolloutStatus {
     /// Number of the present trial, from 1.
     pub trial: u64,
     /// Time steps of the present trial.
     pub steps: u32,
-    /// How the present trial ended, if it has.
+    /// Result of the present trial, if it has ended.
     pub ended: Option<TrialRecord>,
-    /// The latest trials that ended, the present one too, the oldest first.
+    /// Results of the latest trials, including the present one if it has ended; the oldest first.
     pub history: VecDeque<TrialRecord>,
-    /// The nodes from the root to the primitive one that acted last; the root alone
-    /// before the first step.
+    /// The nodes from the root to the primitive subtask that acted last; the root alone before
+    /// the first step.
     pub path: Vec<usize>,
     /// The action that was executed last.
     pub action: Option<usize>,
-    /// The reward for it.
+    /// The reward of that action.
     pub reward: Option<f32>,
-    /// How often each node was invoked.
+    /// Number of invocations of each node.
     pub visits: Vec<u64>,
-    /// Where the agent has been in the present trial, the latest place last.
+    /// Places of the agent in the present trial; the latest last.
     pub trail: VecDeque<[f64; 2]>,
 }
 
-/// One time step.
+/// One time step of a rollout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepTrace {
     /// Number of the trial, from 1.
     pub trial: u64,
     /// Number of the step in it, from 1.
     pub step: u32,
-    /// The state in which the agent chose.
+    /// The state before the step.
     pub before: Snapshot,
-    /// The state that it came to.
+    /// The state after the step.
     pub after: Snapshot,
-    /// Choices, action, reward, updates.
+    /// The choices, the action, the reward and the updates.
     pub explanation: Explanation,
-    /// How the trial ended, if it did with this step.
+    /// Result of the trial, if it ended with this step.
     pub ended: Option<TrialRecord>,
 }
 
@@ -97,10 +99,10 @@ impl RolloutStatus {
     }
 }
 
-/// Follows an agent at little cost.
-struct Follower<'s>(&'s mut RolloutStatus);
+/// Updates the status while an agent acts.
+struct StatusObserver<'s>(&'s mut RolloutStatus);
 
-impl<W: Scenic> Observer<W> for Follower<'_> {
+impl<W: Scenic> Observer<W> for StatusObserver<'_> {
     fn chose(&mut self, node: usize, child: usize) {
         self.0.invoke(node, child);
     }
@@ -197,7 +199,7 @@ impl<W: Scenic> WorldRollout<W> {
         self.status.history.push_back(record);
     }
 
-    fn go_on(&mut self) {
+    fn begin_next_trial_if_ended(&mut self) {
         if self.status.ended.is_some() {
             self.begin_trial();
         }
@@ -206,7 +208,7 @@ impl<W: Scenic> WorldRollout<W> {
 
 impl<W: Scenic> Rollout for WorldRollout<W> {
     fn step(&mut self) -> Option<StepTrace> {
-        self.go_on();
+        self.begin_next_trial_if_ended();
         let (limit, before) = (self.limit(), self.snapshot());
         let trial = &mut self.trial;
         let explained = self.agent.advance_explained(trial, limit, &mut self.rng);
@@ -229,11 +231,11 @@ impl<W: Scenic> Rollout for WorldRollout<W> {
 
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
-            self.go_on();
+            self.begin_next_trial_if_ended();
             let limit = self.limit();
-            let follower = &mut Follower(&mut self.status);
+            let observer = &mut StatusObserver(&mut self.status);
             self.agent
-                .advance(&mut self.trial, limit, &mut self.rng, follower);
+                .advance(&mut self.trial, limit, &mut self.rng, observer);
             self.note_step();
         }
     }
@@ -258,6 +260,7 @@ impl<W: Scenic> Rollout for WorldRollout<W> {
             .map(|(node, composite)| composite.then(|| self.agent.temperature(node)))
             .collect()
     }
+
     fn cells(&self) -> Option<PolicyMap> {
         let world = &self.experiment.world;
         let [columns, rows] = world.scenery().grid?;
@@ -271,8 +274,7 @@ impl<W: Scenic> Rollout for WorldRollout<W> {
     }
 }
 
-/// Begins a trial at the start that is given, if the agent can be there, else at one drawn
-/// by chance.
+/// Begins a trial in `start` if the agent can be there, else at random.
 fn begin<W: Scenic>(
     world: &W,
     agent: &mut Agent<'static, W>,

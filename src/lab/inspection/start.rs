@@ -1,23 +1,23 @@
-//! A state to begin in, as a person writes it.
+//! The state in which the trials of a rollout begin, as it is written on the command line.
 
 use thiserror::Error;
 
 /// A state in which the trials of a rollout begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// Place of the agent in the world's unit.
+    /// Place of the agent, in the world's unit of length.
     pub at: [f64; 2],
-    /// Its heading in radians; of no account where agents have none.
+    /// Heading of the agent in radians; ignored in worlds without headings.
     pub heading: f64,
-    /// Index of one of the experiment's variants.
+    /// Index into [`AnyExperiment::variants`](crate::lab::AnyExperiment::variants).
     pub variant: usize,
 }
 
-/// A text that is no state to begin in.
+/// The error for a text that is not such a state.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "found {found:?}; allowed: CASE at X,Y with free room there, and 'heading DEGREES' after it \
-     where agents have one; X and Y in {unit}, from 0 to {extent}; CASE one of {cases}"
+    "found {found:?}; allowed: CASE at X,Y where the agent has room, followed by 'heading DEGREES' \
+     if agents have headings; X and Y in {unit}, from 0 to {extent}; CASE one of {cases}"
 )]
 pub struct StartError {
     /// The text.
@@ -26,7 +26,7 @@ pub struct StartError {
     pub unit: String,
     /// The largest X and Y.
     pub extent: String,
-    /// What can be the case.
+    /// The variants, separated by commas.
     pub cases: String,
 }
 
