@@ -330,7 +330,7 @@ fn settings_are_checked_with_scenarios() {
     );
     let refused = check(&["thesis", "--set", "learning.discount=0.5"]);
     assert!(
-        stderr(&refused).contains("for the plan thesis; allowed"),
+        stderr(&refused).contains("with the plan thesis; allowed"),
         "{}",
         stderr(&refused)
     );

@@ -413,7 +413,7 @@ fn exports_say_what_is_allowed() {
     for (arguments, expected) in [
         (
             &["--format", "svg"][..],
-            "allowed with svg and text: 4.3, 4.5",
+            "with --format svg or text; allowed: 4.3, 4.5",
         ),
         (
             &["--format", "dot", "--figure", "4.8"],
