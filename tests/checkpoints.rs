@@ -1,8 +1,8 @@
-//! Contract 3: loading a checkpoint and saving it again gives the same bytes, and every
-//! checkpoint that was kept can be gone on from.
+//! Contract: loading a checkpoint and saving it again gives the same bytes, and a run can be
+//! resumed from every kept checkpoint.
 //!
-//! Why it matters: a number that comes back from the disk one bit off, or a field that
-//! is forgotten, makes a resumed run another run, and nobody would notice.
+//! Why it matters: if a number came back from the disk one bit off, or a field were forgotten, a
+//! resumed run would silently become another run.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -29,7 +29,7 @@ fn assert_round_trip(bytes: &[u8], what: &str) {
     assert_same_bytes(&rebuilt, bytes, &format!("{what}, by its state"));
 }
 
-/// The kept checkpoints of a run, in order.
+/// Returns the kept checkpoints of a run, in order.
 fn kept(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder.join("generations")).unwrap();
     let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -38,7 +38,7 @@ fn kept(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn smoke_is_saved_as_it_was_loaded() {
+fn saving_a_loaded_checkpoint_of_smoke_gives_the_same_bytes() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("run");
     let outcome = run_in(&folder, &smoke(&[]), 1, &threads(2));
@@ -52,7 +52,7 @@ fn smoke_is_saved_as_it_was_loaded() {
 }
 
 #[test]
-fn every_kept_checkpoint_leads_to_the_same_end() {
+fn resuming_from_any_kept_checkpoint_gives_the_same_result() {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("run");
     run_in(&folder, &short(&[]), 1, &threads(2));
@@ -69,7 +69,7 @@ fn every_kept_checkpoint_leads_to_the_same_end() {
 }
 
 #[test]
-fn what_comes_back_from_the_disk_is_what_was_saved() {
+fn states_survive_the_disk_bit_for_bit() {
     let saved = common::record(&short(&[]), 3, &threads(2)).checkpoint;
     let text = String::from_utf8(saved).unwrap();
     let once = Checkpoint::from_text(&text).unwrap();
@@ -83,7 +83,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_run_is_saved_as_it_was_loaded(
+    fn saving_a_loaded_checkpoint_of_any_run_gives_the_same_bytes(
         seed: u64,
         generations in 1_u64..5,
         shared: bool,

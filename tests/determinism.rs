@@ -1,10 +1,9 @@
-//! Contract 1: the same scenario and seed give the same events and the same checkpoint,
-//! bit for bit, for any number of threads, paused or not, watched or not; and every
-//! switch of a scenario that should matter does.
+//! Contract: the same scenario and seed give the same events and the same checkpoint, bit for bit,
+//! for any number of threads, paused or not, watched or not; and every switch of a scenario has an
+//! effect.
 //!
-//! Why it matters: a result that depends on the machine's mood cannot be checked by
-//! anybody, an interrupted run could not be continued, and watching an experiment would
-//! change it.
+//! Why it matters: a result that depends on the machine cannot be checked by anybody, an
+//! interrupted run could not be resumed, and watching an experiment would change it.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -19,11 +18,11 @@ use maxq_lab::random::{Purpose, stream};
 use maxq_lab::scenario::Scenario;
 use rand::RngExt;
 
-/// CRC-32 of `events.jsonl` of `smoke` with seed 1: the bits that everybody gets. It may
-/// change only with an intended change of the method or of its random streams.
+/// CRC-32 of `events.jsonl` of `smoke` with seed 1, which is the same on every machine. It may change
+/// only with an intended change of the method or of its random streams.
 const GOLDEN: u32 = 0x893b_3dfa;
 
-/// The record of a run that is treated in some way before its end is waited for.
+/// Returns the record of a run; `treated` may disturb it first.
 fn record_when(scenario: &Scenario, treated: impl FnOnce(&mut Run)) -> Record {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("run");
@@ -34,7 +33,7 @@ fn record_when(scenario: &Scenario, treated: impl FnOnce(&mut Run)) -> Record {
 }
 
 #[test]
-fn the_bits_are_those_that_everybody_gets() {
+fn the_bits_are_the_published_ones() {
     let found = crc32fast::hash(&record(&smoke(&[]), 1, &threads(2)).events);
     assert!(
         found == GOLDEN,
@@ -73,8 +72,8 @@ fn pausing_and_stepping_at_random_moments_changes_nothing() {
     }
 }
 
-/// Pauses, steps and resumes until the run is over. It is paused at once, so that it
-/// cannot end before anything was done to it.
+/// Pauses, steps and resumes until the run is over. The first pause comes at once, so that the run
+/// cannot end before it.
 fn disturb(run: &mut Run, round: u64) {
     let mut rng = stream(round, 0, 0, Purpose::Trials);
     run.controls.pause();
@@ -86,7 +85,7 @@ fn disturb(run: &mut Run, round: u64) {
     ];
     for _ in 0..60 {
         commands[rng.random_range(0..commands.len())](&run.controls);
-        // The moment is random; nothing is waited for.
+        // The moment is random; the test waits for nothing.
         std::thread::sleep(Duration::from_micros(rng.random_range(0..800)));
     }
     run.controls.resume();
@@ -117,8 +116,8 @@ fn a_step_is_one_generation_and_a_paused_run_computes_nothing() {
 }
 
 #[test]
-fn a_reader_slow_gone_or_missing_changes_nothing() {
-    // A large population has more events than may wait for a reader.
+fn a_slow_or_missing_reader_changes_nothing() {
+    // A large population has more events than the channel holds.
     let mut scenario = short(&["evolution.trial_step_limit=20"]);
     let evolution = &mut scenario.evolution;
     evolution.initial_population = vec![evolution.initial_population.clone(); 10].concat();
@@ -130,7 +129,7 @@ fn a_reader_slow_gone_or_missing_changes_nothing() {
     });
     gone.assert_same(&unread, "a reader that went away");
     let slow = record_when(&scenario, |run| {
-        // The run goes on to its end although nobody takes its events.
+        // The run reaches its end although nobody reads its events.
         let log = run.folder.join("events.jsonl");
         let complete = unread.events.iter().filter(|&&byte| byte == b'\n').count();
         wait_until("the end of the run", || common::lines(&log) == complete);
@@ -146,7 +145,7 @@ fn a_reader_slow_gone_or_missing_changes_nothing() {
 }
 
 #[test]
-fn what_is_kept_changes_nothing() {
+fn the_kept_generations_change_nothing() {
     let all = record(&short(&[]), 1, &threads(2));
     let none = RunOptions {
         keep: "none".parse().unwrap(),
@@ -157,7 +156,7 @@ fn what_is_kept_changes_nothing() {
 
 #[test]
 fn every_switch_is_deterministic_and_matters() {
-    // Quick cooling, so that when it happens matters in a short run.
+    // Quick cooling, so that its time matters in a short run.
     const COOLING: &str = "learning.temperature_decrease=0.7";
     let default = record(&short(&[COOLING]), 1, &threads(2));
     for switch in [

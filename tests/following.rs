@@ -1,8 +1,8 @@
-//! A follower tells of a run folder what the run itself tells its reader, whenever it comes
-//! and whatever becomes of the run, and leaves no trace in the folder.
+//! Contract: a follower of a run folder reports the same facts as the run itself, whenever it starts
+//! and whatever happens to the run, and writes nothing to the folder.
 //!
-//! Why it matters: a run on a compute server is watched from a desk, over a shared folder
-//! and over days. What is shown must be the run, and watching must not touch it.
+//! Why it matters: a run on a compute server is watched over a shared folder for days. What is
+//! shown must be the run, and watching must not disturb it.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -32,7 +32,7 @@ impl Follower {
         Self { watch, told }
     }
 
-    /// Follows until something is told, or was told already.
+    /// Follows until a piece of news that `is` accepts has come.
     fn until(&mut self, what: &str, is: impl Fn(&News) -> bool) {
         let mut from = 0;
         wait_until(what, || {
@@ -43,11 +43,13 @@ impl Follower {
         });
     }
 
-    fn until_life(&mut self, life: Liveness) {
-        self.until(&format!("{life:?}"), |news| *news == News::Liveness(life));
+    fn until_liveness(&mut self, liveness: Liveness) {
+        self.until(&format!("{liveness:?}"), |news| {
+            *news == News::Liveness(liveness)
+        });
     }
 
-    /// The recorded events since the run that is told of now was announced.
+    /// Returns the recorded events since the latest announcement of a run.
     fn recorded(&self) -> Vec<Event> {
         let is_run = |news: &News| matches!(news, News::Run(_));
         let begin = self.told.iter().rposition(is_run).unwrap();
@@ -69,22 +71,22 @@ fn log_of(folder: &Path) -> Vec<Event> {
 }
 
 #[test]
-fn a_run_is_followed_from_before_its_folder_is_there_to_its_end() {
+fn a_run_is_followed_from_before_its_folder_exists_to_its_end() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("later/run");
     let mut follower = Follower::of(&folder);
-    follower.until_life(Liveness::Absent);
+    follower.until_liveness(Liveness::Absent);
     let scenario = short(&["evolution.selection=random"]);
     let run = start(scenario.clone(), 3, &folder, &threads(1)).unwrap();
     run.controls.pause();
     follower.until("the pause", |news| *news == News::Event(Event::Paused));
     assert!(follower.told.contains(&News::Liveness(Liveness::Computing)));
-    // A whole run may be over between two beats of its pulse; a run that waits is not.
+    // Paused, because a whole run may pass between two beats of its pulse.
     run.controls.step();
     let progress = |news: &News| matches!(news, News::Event(event) if event.is_progress());
     follower.until("progress", progress);
     run.controls.resume();
-    follower.until_life(Liveness::Over);
+    follower.until_liveness(Liveness::Over);
     run.join().unwrap();
     assert!(follower.recorded() == log_of(&folder));
     let News::Run(manifest) = &follower.told[1] else {
@@ -94,7 +96,7 @@ fn a_run_is_followed_from_before_its_folder_is_there_to_its_end() {
 }
 
 #[test]
-fn a_torn_line_is_told_when_it_is_whole() {
+fn an_incomplete_line_is_reported_when_it_is_complete() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     let run = start(
@@ -105,7 +107,7 @@ fn a_torn_line_is_told_when_it_is_whole() {
     );
     stop_after(run.unwrap(), 2);
     let mut follower = Follower::of(&folder);
-    follower.until_life(Liveness::Stopped);
+    follower.until_liveness(Liveness::Stopped);
     let before = follower.recorded();
     let event = Event::Ended {
         generations: 2,
@@ -115,7 +117,8 @@ fn a_torn_line_is_told_when_it_is_whole() {
     let path = folder.join("events.jsonl");
     let mut log = OpenOptions::new().append(true).open(path).unwrap();
     log.write_all(&line.as_bytes()[..20]).unwrap();
-    // Another file changes after the torn line: the follower has looked at both.
+    // Another file changes after the incomplete line; once that change is reported, the line
+    // was read too.
     fs::write(
         folder.join("checkpoint.json"),
         r#"{"state":{"generation":77}}"#,
@@ -125,18 +128,18 @@ fn a_torn_line_is_told_when_it_is_whole() {
     follower.until("a look", |news| *news == saved);
     assert_eq!(follower.recorded(), before);
     log.write_all(&line.as_bytes()[20..]).unwrap();
-    follower.until_life(Liveness::Over);
+    follower.until_liveness(Liveness::Over);
     assert_eq!(follower.recorded(), [before, vec![event]].concat());
     assert_eq!(follower.runs(), 1);
 }
 
 #[test]
-fn a_run_that_took_its_place_is_told_from_its_start() {
+fn a_run_that_replaces_another_is_reported_from_its_start() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     run_in(&folder, &short(&[]), 1, &threads(2));
     let mut follower = Follower::of(&folder);
-    follower.until_life(Liveness::Over);
+    follower.until_liveness(Liveness::Over);
     let force = RunOptions {
         force: true,
         ..threads(2)
@@ -153,13 +156,13 @@ fn a_run_that_took_its_place_is_told_from_its_start() {
 }
 
 #[test]
-fn a_resumed_run_is_told_on_whatever_was_cut_off() {
+fn a_resumed_run_is_followed_even_if_events_were_cut_off() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     let scenario = short(&["evolution.selection=random", "evolution.generation_limit=2"]);
     run_in(&folder, &scenario, 1, &threads(2));
     let mut follower = Follower::of(&folder);
-    follower.until_life(Liveness::Over);
+    follower.until_liveness(Liveness::Over);
     resume(&folder, Some(4), &threads(2))
         .unwrap()
         .join()
@@ -172,7 +175,7 @@ fn a_resumed_run_is_told_on_whatever_was_cut_off() {
 }
 
 #[test]
-fn a_killed_run_is_recognised() {
+fn a_killed_run_is_reported_as_silent() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     let mut command = program();
@@ -192,10 +195,10 @@ fn a_killed_run_is_recognised() {
     follower.until("a generation", |news| {
         matches!(news, News::Event(Event::Generation(_)))
     });
-    follower.until_life(Liveness::Computing);
+    follower.until_liveness(Liveness::Computing);
     child.kill().unwrap();
     child.wait().unwrap();
-    follower.until_life(Liveness::Silent);
+    follower.until_liveness(Liveness::Silent);
     assert_eq!(Recording::read(&folder).unwrap().liveness, Liveness::Silent);
     wait_until("the last event", || {
         follower.told.extend(follower.watch.news.try_iter());
@@ -204,7 +207,7 @@ fn a_killed_run_is_recognised() {
 }
 
 #[test]
-fn rubbish_is_reported_and_the_follower_lives_on() {
+fn unreadable_files_are_reported_and_following_continues() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     run_in(&folder, &short(&[]), 1, &threads(2));
@@ -223,7 +226,7 @@ fn rubbish_is_reported_and_the_follower_lives_on() {
 }
 
 #[test]
-fn a_follower_leaves_no_trace() {
+fn a_follower_writes_nothing() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     run_in(&folder, &short(&[]), 1, &threads(2));
@@ -241,13 +244,13 @@ fn a_follower_leaves_no_trace() {
     };
     let before = state();
     let mut follower = Follower::of(&folder);
-    follower.until_life(Liveness::Over);
+    follower.until_liveness(Liveness::Over);
     let recording = Recording::read(&folder).unwrap();
     let recorded = |event: &&Event| event.is_recorded();
     let recorded: Vec<_> = recording.events.iter().filter(recorded).cloned().collect();
     assert!(recorded == log_of(&folder));
     assert_eq!(recording.liveness, Liveness::Over);
-    // No lock is held: another process may go on with the run.
+    // No lock is held: another process may resume the run.
     resume(&folder, None, &threads(1)).unwrap().join().unwrap();
     let unchanged = ["events.jsonl", "lock"].map(|name| folder.join(name));
     let of = |files: &[(std::path::PathBuf, SystemTime, u64)]| {

@@ -1,8 +1,8 @@
-//! Contract: whatever is looked at of an individual - rollouts, values, maps, ancestors,
-//! populations of the past - is what the run itself has, and looking changes nothing.
+//! Contract: everything that inspection shows of an individual (rollouts, learned values, maps,
+//! ancestors, past populations) is what the run has, and inspecting changes nothing.
 //!
-//! The dashboard shows a run through this interface alone. If a rollout depended on how it
-//! is watched, a figure could not be repeated; if a map or a probability came from other
+//! Why it matters: the dashboard shows a run through this interface alone. If a rollout depended
+//! on how it is watched, a figure could not be repeated; if a map or a probability came from other
 //! numbers than the run's, the screen would contradict the record.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
@@ -63,7 +63,7 @@ fn finished() -> Finished {
 }
 
 #[test]
-fn a_rollout_is_the_same_however_it_is_watched() {
+fn a_rollout_is_the_same_stepped_or_advanced() {
     let run = finished();
     let state = run.archive().latest().unwrap();
     let individual = InspectedIndividual::at(&state, 0).unwrap();
@@ -93,7 +93,7 @@ fn a_rollout_is_the_same_however_it_is_watched() {
 }
 
 #[test]
-fn rollouts_have_streams_of_their_own() {
+fn each_rollout_has_its_own_random_stream() {
     let run = finished();
     let state = run.archive().latest().unwrap();
     let individual = InspectedIndividual::at(&state, 0).unwrap();
@@ -108,7 +108,7 @@ fn rollouts_have_streams_of_their_own() {
 }
 
 #[test]
-fn a_trial_that_is_over_stays_until_the_next_step() {
+fn a_finished_trial_stays_until_the_next_step() {
     let run = finished();
     let state = run.archive().latest().unwrap();
     let individual = InspectedIndividual::at(&state, 0).unwrap();
@@ -127,7 +127,7 @@ fn a_trial_that_is_over_stays_until_the_next_step() {
 }
 
 #[test]
-fn selection_probabilities_are_those_of_the_record() {
+fn selection_probabilities_equal_those_of_the_record() {
     let run = finished();
     let mut archive = run.archive();
     let record = run.records.last().unwrap();
@@ -158,7 +158,7 @@ fn selection_probabilities_are_those_of_the_record() {
 }
 
 #[test]
-fn maps_repeat_and_know_where_nobody_can_be() {
+fn maps_are_repeatable_and_empty_where_no_agent_can_be() {
     let run = Finished::new(
         Scenario::load("environment-2")
             .unwrap()
@@ -238,7 +238,7 @@ fn profiles_cover_every_node_that_can_act() {
 }
 
 #[test]
-fn every_kept_generation_can_be_fetched_again() {
+fn every_kept_generation_can_be_read() {
     let run = finished();
     let mut archive = run.archive();
     for _ in 0..2 {
@@ -273,7 +273,7 @@ fn a_generation_that_was_not_kept_is_a_clear_error() {
 }
 
 #[test]
-fn files_of_another_run_and_damaged_ones_are_errors_that_name_them() {
+fn errors_name_files_that_are_damaged_or_of_another_run() {
     let run = finished();
     let kept = run.path().join("generations").join("000002.json");
     let other = lasting_experiment(short(&[]), SEED + 1).unwrap();
@@ -298,7 +298,7 @@ fn files_of_another_run_and_damaged_ones_are_errors_that_name_them() {
 }
 
 #[test]
-fn a_live_run_shows_its_latest_population_without_the_disk() {
+fn the_latest_population_of_a_live_run_comes_from_memory() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run");
     let scenario = short(&[]);
@@ -342,7 +342,7 @@ fn lineages_reach_back_to_the_start() {
 }
 
 #[test]
-fn looking_at_individuals_leaves_the_run_as_it_is() {
+fn inspection_leaves_the_run_unchanged() {
     let run = finished();
     let before = common::Record::of(&run.path());
     let state = run.archive().latest().unwrap();

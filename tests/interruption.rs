@@ -1,8 +1,8 @@
-//! Contract 2: a run stopped anywhere, by `kill -9` too, and resumed equals the run that
-//! was never stopped: the same events, the same checkpoint, the same kept generations.
+//! Contract: a run that is stopped at any moment, even by `kill -9`, and resumed has the same
+//! events, the same checkpoint and the same kept generations as an uninterrupted run.
 //!
-//! Why it matters: runs take hours, and machines are switched off. A run that cannot be
-//! trusted after an interruption has to be thrown away.
+//! Why it matters: runs take hours, and machines are switched off. A run that cannot be trusted
+//! after an interruption has to be thrown away.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -23,8 +23,8 @@ use maxq_lab::random::{Purpose, stream};
 use rand::RngExt;
 use tempfile::TempDir;
 
-/// Settings that make `smoke` run for about a second: a population in which chance, not
-/// fitness, decides does not converge for long.
+/// Settings that make `smoke` run for about a second: under random selection a population takes
+/// long to converge.
 const LONGER: &[&str] = &[
     "evolution.selection=random",
     "evolution.trial_step_limit=500",
@@ -68,8 +68,8 @@ fn resume_command(folder: &Path) -> Command {
     command
 }
 
-/// The command that goes on with a run; where there is none yet, the one that starts it.
-fn go_on(folder: &Path) -> Command {
+/// Returns the command that resumes a run, or starts it if there is none.
+fn resume_or_start(folder: &Path) -> Command {
     match folder.exists() {
         true => resume_command(folder),
         false => run_command(folder, LONGER),
@@ -81,7 +81,7 @@ fn spawn(command: &mut Command) -> Child {
     command.spawn().unwrap()
 }
 
-/// The kept generations, by name.
+/// Returns the kept generations, by name.
 fn kept(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let entries = fs::read_dir(folder.join("generations")).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
@@ -97,7 +97,7 @@ fn kept(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     kept
 }
 
-/// Kills a process at a moment after its start, unless it has ended by then.
+/// Kills a process some time after its start, unless it has ended by then.
 fn kill_after(child: &mut Child, moment: Duration) {
     let begun = Instant::now();
     while begun.elapsed() < moment && child.try_wait().unwrap().is_none() {
@@ -108,7 +108,7 @@ fn kill_after(child: &mut Child, moment: Duration) {
 }
 
 #[test]
-fn killed_at_random_moments_and_resumed_is_never_killed() {
+fn a_run_killed_at_random_moments_equals_an_uninterrupted_run() {
     let parent = TempDir::new().unwrap();
     let undisturbed = parent.path().join("undisturbed");
     let begun = Instant::now();
@@ -121,7 +121,7 @@ fn killed_at_random_moments_and_resumed_is_never_killed() {
     let mut rng = stream(seed, 0, 0, Purpose::Trials);
     for kill in 0..KILLS {
         let folder = parent.path().join(format!("killed-{kill}"));
-        // Spread over the whole life; every fourth in the first hundredth, the start-up.
+        // Spread over the whole run; every fourth in the first hundredth, when it starts up.
         let share: f64 = match kill % 4 {
             0 => rng.random_range(0.0..0.01),
             _ => (kill as f64 + rng.random_range(0.0..1.0)) / KILLS as f64,
@@ -133,9 +133,9 @@ fn killed_at_random_moments_and_resumed_is_never_killed() {
         }
         let when = format!("killed after {moments:?} (random seed {seed}, kill {kill})");
         for &moment in &moments {
-            kill_after(&mut spawn(&mut go_on(&folder)), moment);
+            kill_after(&mut spawn(&mut resume_or_start(&folder)), moment);
         }
-        let last = output(&mut go_on(&folder));
+        let last = output(&mut resume_or_start(&folder));
         assert!(last.status.success(), "{when}: {}", stderr(&last));
         Record::of(&folder).assert_same(&expected, &when);
         assert!(
@@ -147,7 +147,7 @@ fn killed_at_random_moments_and_resumed_is_never_killed() {
 }
 
 #[test]
-fn a_signal_saves_a_checkpoint_and_the_run_can_go_on() {
+fn a_signal_saves_a_checkpoint_and_the_run_can_be_resumed() {
     let parent = TempDir::new().unwrap();
     let undisturbed = parent.path().join("undisturbed");
     run_in(&undisturbed, &smoke(LONGER), 1, &threads(2));
@@ -159,7 +159,7 @@ fn a_signal_saves_a_checkpoint_and_the_run_can_go_on() {
         wait_until("three generations", || lines(&log) > 3);
         send(signal, &child);
         assert_eq!(child.wait().unwrap().code(), Some(code), "SIG{signal}");
-        // The start and each generation are a line; the last one is in the checkpoint.
+        // One line for the start and one for each generation; the checkpoint holds the last.
         let text = fs::read_to_string(folder.join("checkpoint.json")).unwrap();
         let saved = Checkpoint::from_text(&text).unwrap();
         assert_eq!(saved.generation, lines(&log) as u64 - 1, "SIG{signal}");
@@ -171,7 +171,7 @@ fn a_signal_saves_a_checkpoint_and_the_run_can_go_on() {
 }
 
 #[test]
-fn a_signal_is_heard_as_soon_as_there_is_a_run_folder() {
+fn a_signal_is_handled_as_soon_as_the_run_folder_exists() {
     let parent = TempDir::new().unwrap();
     for attempt in 0..5 {
         let folder = parent.path().join(format!("run-{attempt}"));
@@ -188,8 +188,8 @@ fn send(signal: &str, to: &Child) {
     assert!(sent.unwrap().success());
 }
 
-/// A run that never converges, stopped after its third generation; and what it would
-/// have come to.
+/// Returns the folder of a run that was stopped after its third generation, and the record of the
+/// same run without interruption.
 fn stopped(parent: &TempDir) -> (PathBuf, Record) {
     let scenario = short(&["evolution.selection=random"]);
     let expected = common::record(&scenario, 1, &threads(2));
@@ -205,7 +205,7 @@ fn resumed(folder: &Path, generations: Option<u64>) -> Outcome {
 }
 
 #[test]
-fn what_was_written_after_the_checkpoint_is_dropped() {
+fn events_after_the_checkpoint_are_dropped() {
     let line = br#"{"event":"ended","generations":4,"ending":"converged"}"#;
     let whole_line = [line.as_slice(), b"\n"].concat();
     let tails: [(&str, &[u8]); 4] = [
@@ -227,7 +227,7 @@ fn what_was_written_after_the_checkpoint_is_dropped() {
 }
 
 #[test]
-fn without_a_checkpoint_the_run_begins_again() {
+fn without_a_checkpoint_the_run_starts_again() {
     let parent = TempDir::new().unwrap();
     let (folder, expected) = stopped(&parent);
     fs::remove_file(folder.join("checkpoint.json")).unwrap();
@@ -236,7 +236,7 @@ fn without_a_checkpoint_the_run_begins_again() {
 }
 
 #[test]
-fn another_generation_limit_is_as_good_as_the_first() {
+fn a_changed_generation_limit_equals_one_given_at_the_start() {
     let with_limit = |limit: u64| {
         let limit = format!("evolution.generation_limit={limit}");
         short(&["evolution.selection=random", &limit])
@@ -254,7 +254,7 @@ fn another_generation_limit_is_as_good_as_the_first() {
     let run = resume(&interrupted, Some(7), &threads(2)).unwrap();
     run.controls.stop();
     run.join().unwrap();
-    // It goes on, so the result of limit 3 is not its result any more.
+    // The run is resumed, so the summary for limit 3 must go.
     assert!(!interrupted.join("summary.json").exists());
     assert_eq!(resumed(&interrupted, None).generations, 7);
     assert!(interrupted.join("summary.json").exists());
@@ -270,7 +270,7 @@ fn another_generation_limit_is_as_good_as_the_first() {
 }
 
 #[test]
-fn a_finished_run_stays_as_it_is() {
+fn resuming_a_finished_run_changes_nothing() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     let first = run_in(&folder, &short(&[]), 1, &threads(2));

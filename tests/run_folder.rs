@@ -1,8 +1,8 @@
-//! The run folder: what lies in it, that one process at a time writes it, and that nothing
-//! is overwritten or deleted that somebody may want to keep.
+//! Contract: the run folder holds exactly the documented files, only one process at a time writes
+//! to it, and nothing is overwritten or deleted without being asked.
 //!
-//! Why it matters: a run is hours of work. Two processes that write one folder, or a
-//! mistyped --out, must not cost it.
+//! Why it matters: a run takes hours. Two processes in one folder, or a mistyped --out, must not
+//! destroy it.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -20,7 +20,7 @@ use maxq_lab::lab::{Keep, RunOptions, resume};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// `run smoke --out` with the settings that make it short.
+/// Returns the command `run smoke --out` with settings that make the run short.
 fn run(out: &Path) -> Command {
     let mut command = program();
     command.args([
@@ -37,7 +37,7 @@ fn run(out: &Path) -> Command {
     command
 }
 
-/// Everything in a folder: paths below it, sorted.
+/// Returns the paths of everything in a folder, sorted.
 fn contents(folder: &Path) -> Vec<PathBuf> {
     let mut paths = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -67,7 +67,7 @@ fn json(path: &Path) -> Value {
 }
 
 #[test]
-fn the_folder_holds_what_it_should_and_nothing_else() {
+fn the_folder_holds_the_documented_files_and_no_others() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     let outcome = run_in(&folder, &short(&[]), 7, &threads(2));
@@ -101,7 +101,7 @@ fn the_folder_holds_what_it_should_and_nothing_else() {
 }
 
 #[test]
-fn run_json_says_what_was_run() {
+fn run_json_holds_scenario_seed_and_invocation() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     let whole = output(run(&folder).args(["--seed", "7"]));
@@ -148,7 +148,7 @@ fn without_out_the_folder_is_named_after_scenario_and_seed() {
 }
 
 #[test]
-fn keep_says_which_generations_are_kept() {
+fn keep_selects_the_generations_that_are_kept() {
     for (keep, kept) in [
         ("all", &[1, 2, 3, 4, 5, 6][..]),
         ("none", &[]),
@@ -172,7 +172,7 @@ fn keep_says_which_generations_are_kept() {
     }
 }
 
-/// A run that goes on until it is killed.
+/// A run that computes until it is killed.
 struct Endless {
     child: Child,
     folder: PathBuf,
@@ -208,7 +208,7 @@ impl Drop for Endless {
 }
 
 #[test]
-fn a_second_process_is_refused_and_disturbs_nothing() {
+fn a_second_process_is_refused_and_changes_nothing() {
     let parent = TempDir::new().unwrap();
     let mut first = Endless::start(parent.path().join("run"));
     let manifest = fs::read(first.folder.join("run.json")).unwrap();
@@ -235,7 +235,7 @@ fn a_killed_process_leaves_no_lock_behind() {
 }
 
 #[test]
-fn an_existing_run_is_replaced_only_by_force() {
+fn an_existing_run_is_replaced_only_with_force() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     run_in(
@@ -266,7 +266,7 @@ fn an_existing_run_is_replaced_only_by_force() {
 }
 
 #[test]
-fn a_run_folder_is_no_scenario_and_it_is_said_what_was_meant() {
+fn a_run_folder_given_as_a_scenario_is_refused_with_a_hint() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     run_in(&folder, &short(&[]), 1, &threads(2));
@@ -279,7 +279,7 @@ fn a_run_folder_is_no_scenario_and_it_is_said_what_was_meant() {
 }
 
 #[test]
-fn a_run_folder_of_the_name_of_an_embedded_scenario_does_not_hide_that() {
+fn a_run_folder_does_not_hide_a_built_in_scenario_of_the_same_name() {
     let parent = TempDir::new().unwrap();
     run_in(&parent.path().join("smoke"), &short(&[]), 1, &threads(2));
     let said = output(
@@ -295,7 +295,7 @@ fn a_run_folder_of_the_name_of_an_embedded_scenario_does_not_hide_that() {
 }
 
 #[test]
-fn force_deletes_nothing_that_is_no_run() {
+fn force_deletes_only_run_folders() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("thesis");
     fs::create_dir(&folder).unwrap();
@@ -318,7 +318,7 @@ fn force_deletes_nothing_that_is_no_run() {
 }
 
 #[test]
-fn an_empty_folder_is_no_obstacle_and_parents_are_made() {
+fn an_empty_folder_is_used_and_parents_are_created() {
     let parent = TempDir::new().unwrap();
     let empty = parent.path().join("empty");
     fs::create_dir(&empty).unwrap();
@@ -329,7 +329,7 @@ fn an_empty_folder_is_no_obstacle_and_parents_are_made() {
 }
 
 #[test]
-fn a_run_that_is_over_keeps_the_time_that_it_took() {
+fn resuming_a_finished_run_keeps_its_wall_clock_time() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     run_in(&folder, &short(&[]), 1, &threads(2));
@@ -338,7 +338,7 @@ fn a_run_that_is_over_keeps_the_time_that_it_took() {
     fs::rename(&folder, &moved).unwrap();
     resume(&moved, None, &threads(1)).unwrap().join().unwrap();
     assert_eq!(fs::read(moved.join("summary.json")).unwrap(), summary);
-    // What is not true of the run any more is replaced.
+    // A summary that no longer fits the run is replaced.
     let longer = resume(&moved, Some(50), &threads(1))
         .unwrap()
         .join()
@@ -352,8 +352,8 @@ fn a_run_that_is_over_keeps_the_time_that_it_took() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_place_where_nothing_can_be_written_is_refused() {
-    // Refuses new folders whoever asks, unlike a folder without write permission.
+fn a_path_that_cannot_be_written_is_refused() {
+    // Refuses new folders even to root, unlike a folder without write permission.
     let said = refused(&mut run(Path::new("/proc/maxq-lab-run")));
     assert!(said.starts_with("error: /proc"), "{said}");
     assert!(
@@ -374,7 +374,7 @@ fn a_read_only_parent_is_refused() {
     fs::create_dir(&locked).unwrap();
     fs::set_permissions(&locked, fs::Permissions::from_mode(0o555)).unwrap();
     if fs::create_dir(locked.join("probe")).is_ok() {
-        // Permissions do not bind root; the test above covers that machine.
+        // Permissions do not bind root; the test above covers that case.
         return;
     }
     let said = refused(&mut run(&locked.join("run")));
@@ -382,7 +382,7 @@ fn a_read_only_parent_is_refused() {
 }
 
 #[test]
-fn a_run_that_cannot_begin_makes_no_folder() {
+fn a_run_that_cannot_start_creates_no_folder() {
     let parent = TempDir::new().unwrap();
     let out = parent.path().join("run");
     let walls = "world.foraging.arena.size_mm=[300, 300]";
@@ -402,7 +402,7 @@ fn a_run_that_cannot_begin_makes_no_folder() {
 }
 
 #[test]
-fn what_a_dead_process_was_writing_is_cleaned_up() {
+fn unfinished_files_of_a_dead_process_are_removed() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
     run_in(&folder, &short(&[]), 1, &threads(2));

@@ -29,7 +29,7 @@ pub(super) enum LogError {
     },
     /// The log does not start with the events before the checkpoint.
     #[error(
-        "found {found}; allowed: a file that starts with the {} lines ({} bytes, CRC-32 {:08x}) \
+        "found {found}; allowed: a file that begins with the {} lines ({} bytes, CRC-32 {:08x}) \
          that the checkpoint was taken after",
         .expected.lines, .expected.bytes, .expected.crc32
     )]
