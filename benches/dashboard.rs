@@ -1,11 +1,11 @@
-//! What the dashboard costs: time to the first frame, time from a key to its answer, bytes a
-//! second over the line, time that evolution loses. The real program is measured in a real
-//! terminal.
+//! The cost of the dashboard, measured with the real program in a real terminal: time to the
+//! first frame, time from a key to its response, bytes per second, and the slowdown of
+//! evolution.
 //!
-//! `cargo bench --bench dashboard` prints all figures, the goals beside them; `-- start`,
-//! `keys`, `bytes`, `silence` or `cost` some of them. Times are those of the machine as it is;
-//! the cost for evolution is taken in pairs of runs with and without the dashboard, of which
-//! the median counts, as time and as processor time, which others on the machine disturb less.
+//! `cargo bench --bench dashboard` prints all figures next to their goals; `-- start`, `keys`,
+//! `bytes`, `silence` or `cost` prints some of them. The slowdown of evolution is the median
+//! over pairs of runs with and without the dashboard, as time and as processor time; other
+//! programs on the machine affect the latter less.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use pty::{Pty, processor_seconds, program};
 use tempfile::TempDir;
 
-/// Settings with which evolution goes on until it is stopped.
+/// Settings of an evolution that runs until it is stopped.
 const ENDLESS: [&str; 4] = [
     "--set",
     "evolution.variation=none",
@@ -27,23 +27,23 @@ const ENDLESS: [&str; 4] = [
     "evolution.generation_limit=100000",
 ];
 
-/// Time over which bytes are counted.
+/// Time for which bytes are counted.
 const COUNTED: Duration = Duration::from_secs(20);
 
-/// Time in which nothing may come.
+/// Time in which no bytes may be sent.
 const SILENT: Duration = Duration::from_secs(5);
 
-/// Starts of the program.
+/// Number of program starts.
 const STARTS: usize = 9;
 
-/// Keys pressed.
+/// Number of key presses.
 const KEYS: usize = 50;
 
-/// Pairs of runs.
+/// Number of pairs of runs.
 const PAIRS: usize = 5;
 
 fn main() {
-    // Cargo asks every benchmark for its list of tests.
+    // Test runners ask every benchmark for its list of tests.
     if std::env::args().any(|argument| argument == "--list") {
         return;
     }
@@ -88,7 +88,11 @@ fn first_frame() {
         begun.elapsed().as_secs_f64() * 1000.0
     });
     let time = median(times.collect());
-    line("start to first frame", &format!("{time:.0} ms"), "150 ms");
+    line(
+        "time to the first frame",
+        &format!("{time:.0} ms"),
+        "150 ms",
+    );
 }
 
 fn all_keys() {
@@ -96,14 +100,14 @@ fn all_keys() {
     keys("--fps 2", &["--fps", "2"]);
 }
 
-/// Time from pressing a key to the view that it opens, while all threads compute.
+/// Measures the time from a key press to the view that it opens, while all threads compute.
 fn keys(what: &str, more: &[&str]) {
     let parent = TempDir::new().unwrap();
     let mut pty = run(&parent.path().join("run"), &[&ENDLESS[..], more].concat());
     pty.wait("a generation", |pty| pty.screen().contains("generation 2"));
     let views = [("6", " Population "), ("1", " Overview ")];
     let times = (0..KEYS).map(|index| {
-        // At any time between two frames.
+        // Press keys at different times between two frames.
         thread::sleep(Duration::from_millis(200 + 37 * index as u64 % 100));
         let (key, title) = views[index % 2];
         let begun = Instant::now();
@@ -121,7 +125,7 @@ fn keys(what: &str, more: &[&str]) {
     let worst = times.iter().copied().fold(0.0, f64::max);
     let measured = format!("{:.0}, {worst:.0} ms", median(times));
     line(
-        &format!("key to its answer, {what}: median, worst"),
+        &format!("key to response, {what}: median, worst"),
         &measured,
         "50 ms",
     );
@@ -133,7 +137,7 @@ fn all_bytes() {
     bytes(&format!("120x40, --fps 2, {moving}"), &["--fps", "2"], 5.0);
 }
 
-/// Counts from the moment on at which there is something to see.
+/// Counts bytes from the first generation on.
 fn bytes(what: &str, more: &[&str], goal: f64) {
     let parent = TempDir::new().unwrap();
     let pty = run(&parent.path().join("run"), &[&ENDLESS[..], more].concat());
@@ -151,7 +155,7 @@ fn silence() {
     pty.press("p");
     pty.wait("the pause", |pty| pty.screen().contains("PAUSED"));
     pty.press(" ");
-    // Frames that are on their way, and messages that have their time.
+    // Wait for pending frames and for messages to expire.
     let mut last = (0, Instant::now());
     pty.wait("silence", |pty| {
         if pty.bytes() != last.0 {
@@ -176,8 +180,10 @@ fn silence() {
     );
 }
 
-/// One thread computes, so that the dashboard has a processor of its own where there are two;
-/// the processor time of both is counted.
+/// Measures the slowdown of evolution.
+///
+/// Evolution uses one thread, so that on two processors the dashboard has one for itself; the
+/// processor time of all threads is counted.
 fn cost() {
     let ratios: Vec<[f64; 2]> = (0..PAIRS)
         .map(|_| {
@@ -199,8 +205,8 @@ fn cost() {
     }
 }
 
-/// Time until evolution is over, and processor time that the program has used by then, with
-/// the dashboard or without.
+/// Returns the time until evolution has ended and the processor time used by then, with or
+/// without the dashboard.
 fn whole_run(shown: bool) -> [f64; 2] {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("run");
@@ -223,7 +229,7 @@ fn whole_run(shown: bool) -> [f64; 2] {
     }
     let time = begun.elapsed().as_secs_f64();
     if shown {
-        // Before the program knows that it is over, it would ask whether to save the run.
+        // Until the program has noticed the end, quitting would open a question.
         pty.wait_for("FINISHED");
         pty.press("q");
     }

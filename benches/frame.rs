@@ -1,4 +1,4 @@
-//! How long a frame of the dashboard takes: at 200x60 it should stay below 2 ms.
+//! The time to draw a frame of the dashboard: the goal at 200x60 is below 2 ms.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 

@@ -1,6 +1,6 @@
 //! `maxq-lab frame`: prints one frame of the dashboard.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use super::dashboard::AppearanceArgs;
 use super::output::{self, CommandResult};
 use crate::dashboard::keys::Key;
 use crate::dashboard::{
-    App, FrameFormat, Input, Mode, OffscreenDashboard, ViewContext, ViewId, render,
+    App, Effect, FrameFormat, Input, Mode, OffscreenDashboard, ViewContext, ViewId, render,
 };
 use crate::lab::inspection::Archive;
 use crate::lab::{Recording, lasting_experiment};
@@ -57,6 +57,7 @@ pub(super) struct Args {
 
     /// Keys to press, separated by spaces: characters, or names such as enter, tab, esc, up,
     /// page-down, f1, ctrl-l; press ? in the dashboard for what they do.
+    /// 'e c' writes the data of the view as a CSV file into the current folder.
     #[arg(long, default_value = "")]
     keys: String,
 
@@ -131,8 +132,16 @@ pub(super) fn main(args: &Args) -> CommandResult {
     for _ in 0..(args.play / TICK.as_secs_f64()).round() as u64 {
         dashboard.update(Input::Tick(TICK));
     }
+    let here = Path::new(".");
     for key in keys {
-        dashboard.update(Input::Key(key));
+        for effect in dashboard.update(Input::Key(key)) {
+            if let Effect::Export(export) = effect {
+                let path = export
+                    .save(here)
+                    .map_err(|error| format!("{}: {error}", export.name))?;
+                output::message(&format!("written: {}", path.display()));
+            }
+        }
     }
     let frame = render(&dashboard.app().frame(), args.format);
     output::raw(frame.as_bytes())?;

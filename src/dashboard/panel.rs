@@ -1,5 +1,5 @@
-//! The frame around what is shown: header and hint bar, the border of a panel, and what there
-//! is to see where there is no room.
+//! The parts of every screen that do not depend on a view: panel borders, the body between
+//! header and hint bar, and the message for a terminal that is too small.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -7,10 +7,10 @@ use ratatui::widgets::{Block, Widget};
 
 use super::look::{Look, Paint, fitted_parts, put, width};
 
-/// Smallest size, in columns and rows, at which there is something to see.
+/// Smallest size in columns and rows at which the dashboard is drawn.
 pub const SMALLEST: (u16, u16) = (40, 12);
 
-/// Draws border, title and caption of a panel, and returns the area inside.
+/// Draws the border, title and caption of a panel, and returns the area inside.
 ///
 /// ```text
 /// ╭ Title  caption ─────────╮
@@ -25,9 +25,10 @@ pub(super) fn panel(
     buffer: &mut Buffer,
 ) -> Rect {
     let area = area.intersection(buffer.area);
-    let (border, name) = match focused {
-        true => (Paint::Focus, Paint::Focus),
-        false => (Paint::Border, Paint::Title),
+    let (border, name) = if focused {
+        (Paint::Focus, Paint::Focus)
+    } else {
+        (Paint::Border, Paint::Title)
     };
     let block = Block::bordered()
         .border_set(look.signs.border)
@@ -39,10 +40,11 @@ pub(super) fn panel(
         height: area.height.min(1),
         ..area
     };
-    // Not by colour alone: a title in focus has a pointer.
-    let title = match focused {
-        true => format!("{} {title} ", look.signs.pointer),
-        false => format!(" {title} "),
+    // Focus must show without colours too, so a focused title has a pointer.
+    let title = if focused {
+        format!("{} {title} ", look.signs.pointer)
+    } else {
+        format!(" {title} ")
     };
     let after = put(buffer, room, (1, 0), &title, look.style(name));
     let left = usize::from(room.width.saturating_sub(after));
@@ -54,12 +56,12 @@ pub(super) fn panel(
     inside
 }
 
-/// The area inside the border of a panel.
+/// Returns the area inside the border of a panel.
 pub(super) fn inside(area: Rect) -> Rect {
     Block::bordered().inner(area)
 }
 
-/// Between header and hint bar.
+/// Returns the area between header and hint bar.
 pub(super) fn body(area: Rect) -> Rect {
     Rect {
         y: area.y + area.height.min(1),
@@ -68,7 +70,7 @@ pub(super) fn body(area: Rect) -> Rect {
     }
 }
 
-/// Says that there is not enough room to see anything.
+/// Draws the message for a terminal that is too small.
 pub(super) fn too_small(look: &Look, area: Rect, buffer: &mut Buffer) {
     let style = look.style(Paint::Notice);
     let (columns, rows) = SMALLEST;

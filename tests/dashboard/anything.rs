@@ -1,4 +1,4 @@
-//! Any sequence of keys, sizes, events and times: the dashboard goes on.
+//! No sequence of keys, sizes, events and times makes the dashboard panic.
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ fn key() -> impl Strategy<Value = Key> {
     ]
 }
 
-/// A generation as it was recorded, or with parts missing, strange or huge.
+/// A recorded generation, or one with missing, strange or huge parts.
 fn record() -> impl Strategy<Value = GenerationRecord> {
     let numbers = (
         1..7_usize,
@@ -97,7 +97,7 @@ fn input() -> impl Strategy<Value = Input> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
-    fn anything_goes(
+    fn any_sequence_of_inputs_draws_a_clean_frame(
         inputs in prop::collection::vec(input(), 1..60),
         mode in prop::sample::select(vec![Mode::Live, Mode::Watch, Mode::Replay]),
         ascii in any::<bool>(),

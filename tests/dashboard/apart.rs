@@ -1,4 +1,4 @@
-//! Individuals taken apart: inspector, policy map, trial stepper, comparison.
+//! The views of one individual: inspector, policy map, trial stepper, comparison.
 
 use maxq_lab::dashboard::Effect;
 use maxq_lab::hierarchy::Glyphs::{Ascii, Unicode};
@@ -54,7 +54,7 @@ fn individuals_of_other_worlds() {
     assert_shots(&cells("taxi"), [0.0, 0.1], &shots);
 }
 
-/// Step and trial of the step that is shown.
+/// Trial and number of the shown step.
 fn shown(screen: &Screen) -> (u64, u64) {
     let text = screen.text();
     let after = |word: &str| -> u64 {
@@ -66,7 +66,7 @@ fn shown(screen: &Screen) -> (u64, u64) {
 }
 
 #[test]
-fn keys_step_forth_and_back_through_a_trial() {
+fn keys_step_forward_and_back_through_a_trial() {
     let mut screen = screen();
     screen.press("t .");
     let (trial, step) = shown(&screen);
@@ -75,7 +75,7 @@ fn keys_step_forth_and_back_through_a_trial() {
     screen.press(", ,");
     assert_eq!(shown(&screen), (trial, step + 1));
     assert!(screen.text().contains("2 steps back"));
-    // Forth again through what was recorded, then on.
+    // Forward through the recorded steps, then on to new ones.
     screen.press(". .");
     assert_eq!(shown(&screen), (trial, step + 3));
     screen.press(".");
@@ -86,7 +86,7 @@ fn keys_step_forth_and_back_through_a_trial() {
     assert_eq!(shown(&screen), (trial + 1, 1));
 }
 
-/// Steps of an earlier trial are not taken for steps of this one.
+/// Steps of an earlier trial cannot be mistaken for steps of this one.
 #[test]
 fn the_steps_of_an_earlier_trial_are_below_its_number() {
     let mut screen = screen();
@@ -105,7 +105,7 @@ fn the_steps_of_an_earlier_trial_are_below_its_number() {
     has(2, " 3  type");
 }
 
-/// A step of the past is shown with the way that led to it, not with what came after.
+/// An earlier step is shown with the trail up to it, not with later positions.
 #[test]
 fn the_trail_is_that_of_the_step_shown() {
     let mut screen = screen();
@@ -118,14 +118,14 @@ fn the_trail_is_that_of_the_step_shown() {
         assert_eq!(trail[..], whole[..trail.len()]);
         assert_eq!(trail.last(), Some(&step.after.at));
     }
-    // A trial that is over has left what was recorded of it.
+    // Of an ended trial the recorded positions remain.
     screen.press("N .");
     let player = &screen.0.app().context().player;
     assert_eq!(player.trail(0).len(), 2);
     assert_eq!(player.trail(1).last(), whole.last());
 }
 
-/// Whoever travels through time reads of whom and when everything is.
+/// In an earlier generation, every caption names individual and generation.
 #[test]
 fn captions_name_individual_and_generation() {
     let mut screen = screen();
@@ -181,7 +181,7 @@ fn every_part_of_a_step_is_on_the_screen() {
 }
 
 #[test]
-fn the_map_turns_and_changes_its_load() {
+fn the_map_changes_heading_and_load() {
     let mut screen = screen();
     screen.press("m");
     let at_first = screen.text();
@@ -208,7 +208,7 @@ fn the_marked_individual_is_what_others_are_compared_with() {
         "{text}"
     );
     assert!(text.contains("marked: rank"), "{text}");
-    // Who is marked is not compared with himself.
+    // The marked individual is not compared with itself.
     screen.press("j j j");
     assert_eq!(screen.0.app().context().selected().unwrap().id, marked);
     assert_ne!(screen.0.app().context().rivals().unwrap()[1].id, marked);
@@ -224,7 +224,7 @@ fn exported(screen: &mut Screen, keys: &str) -> String {
 }
 
 #[test]
-fn what_is_taken_apart_can_be_exported() {
+fn the_views_of_an_individual_can_be_exported() {
     let mut screen = screen();
     let head = |csv: &str| csv.lines().next().unwrap().to_owned();
     for (view, columns, least) in [

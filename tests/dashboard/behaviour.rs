@@ -1,4 +1,4 @@
-//! What keys do, and when there is something to draw.
+//! The effects of keys, and when a redraw is needed.
 
 use maxq_lab::dashboard::keys::Action;
 use maxq_lab::dashboard::{Effect, Input, Mode, ShownGeneration, ViewId};
@@ -15,7 +15,7 @@ fn screen() -> Screen {
 fn live() -> Screen {
     let mut screen = foraging().blank(Mode::Live, "dark", Unicode);
     for event in &foraging().events[..4] {
-        screen.tell(event.clone());
+        screen.send(event.clone());
     }
     screen.wait(0.1);
     screen
@@ -68,7 +68,7 @@ fn a_halted_rollout_in_a_finished_run_draws_nothing() {
 }
 
 #[test]
-fn a_rollout_that_is_halted_before_its_first_step_says_how_it_goes_on() {
+fn a_rollout_halted_before_its_first_step_names_the_key_to_resume() {
     let mut screen = screen();
     screen.press("0");
     for key in ["space", ".", ".", ",", "r"] {
@@ -84,7 +84,7 @@ fn a_rollout_that_is_halted_before_its_first_step_says_how_it_goes_on() {
 }
 
 #[test]
-fn a_rollout_that_nobody_sees_does_not_go_on() {
+fn an_invisible_rollout_does_not_advance() {
     let mut screen = screen();
     screen.press("4");
     screen.0.take_dirty();
@@ -93,7 +93,7 @@ fn a_rollout_that_nobody_sees_does_not_go_on() {
 }
 
 #[test]
-fn time_travel_goes_through_all_generations() {
+fn keys_reach_all_generations() {
     let mut screen = screen();
     assert_eq!(generation(&screen), 6);
     screen.press("[ [");
@@ -114,11 +114,11 @@ fn time_travel_goes_through_all_generations() {
 }
 
 #[test]
-fn a_frozen_view_holds_while_evolution_goes_on() {
+fn a_frozen_display_stays_while_evolution_continues() {
     let mut screen = live();
     assert_eq!(generation(&screen), 3);
     screen.press("f");
-    screen.tell(foraging().events[4].clone());
+    screen.send(foraging().events[4].clone());
     assert_eq!(generation(&screen), 3);
     assert_eq!(
         screen.0.app().context().live_history().generations().len(),
@@ -128,16 +128,16 @@ fn a_frozen_view_holds_while_evolution_goes_on() {
     assert_eq!(generation(&screen), 4);
 }
 
-/// The hierarchy beside a rollout that was halted is that of the rollout, however far evolution
-/// has gone on.
+/// The hierarchy beside a halted rollout is the one of the rollout, however far evolution has
+/// advanced.
 #[test]
-fn arena_and_hierarchy_speak_of_one_individual() {
+fn arena_and_hierarchy_show_the_same_individual() {
     let mut screen = live();
     screen.0.update(Input::Resize(120, 40));
     screen.press("space");
     let subject = screen.0.app().context().player.subject().unwrap();
     for event in &foraging().events[4..] {
-        screen.tell(event.clone());
+        screen.send(event.clone());
         screen.wait(1.0);
     }
     let context = screen.0.app().context();
@@ -153,9 +153,9 @@ fn arena_and_hierarchy_speak_of_one_individual() {
     );
 }
 
-/// So is the comparison: both individuals are of the generation that is looked at.
+/// Both individuals of a comparison are of the inspected generation.
 #[test]
-fn two_are_compared_as_they_were_together() {
+fn compared_individuals_are_of_one_generation() {
     let mut screen = live();
     screen.0.update(Input::Resize(120, 40));
     screen.press("space");
@@ -168,7 +168,7 @@ fn two_are_compared_as_they_were_together() {
         .unwrap()
         .generation;
     for event in &foraging().events[4..] {
-        screen.tell(event.clone());
+        screen.send(event.clone());
         screen.wait(1.0);
     }
     screen.press("c");
@@ -182,15 +182,15 @@ fn two_are_compared_as_they_were_together() {
 }
 
 #[test]
-fn evolution_is_steered() {
+fn keys_steer_evolution() {
     let mut screen = live();
     assert_eq!(screen.press("p"), [Effect::Pause]);
-    screen.tell(Event::Paused);
+    screen.send(Event::Paused);
     assert!(screen.text().contains("PAUSED"));
     assert_eq!(screen.press("n"), [Effect::Step]);
-    screen.tell(Event::Resumed);
+    screen.send(Event::Resumed);
     assert!(screen.text().contains("STEPPING"));
-    screen.tell(Event::Paused);
+    screen.send(Event::Paused);
     assert_eq!(screen.press("p"), [Effect::Resume]);
     assert_eq!(screen.press("w"), [Effect::Checkpoint]);
     assert_eq!(screen.press("X n"), [], "no was the answer");
@@ -198,7 +198,7 @@ fn evolution_is_steered() {
 }
 
 #[test]
-fn a_run_is_not_left_without_a_question() {
+fn quitting_a_live_run_asks_a_question() {
     let mut screen = live();
     assert_eq!(screen.press("q"), []);
     assert_eq!(screen.press("n"), []);
@@ -223,7 +223,7 @@ fn a_replay_cannot_be_steered_and_says_so() {
 }
 
 #[test]
-fn what_is_on_the_screen_can_be_exported() {
+fn every_view_can_be_exported() {
     let mut screen = screen();
     for (keys, name, begin) in [
         ("e t", "overview-generation6.txt", " ✓ FINISHED"),
@@ -255,14 +255,14 @@ fn help_names_every_key_of_a_view() {
     assert!(!text.contains("The panel before"), "{text}");
 }
 
-/// A column of a chart keeps its meaning while generations come: less to send, and a picture that
-/// does not jitter.
+/// A column of a chart keeps its meaning while generations are added: the picture is steady,
+/// and fewer bytes are sent.
 #[test]
-fn the_axis_of_generations_stays_for_a_while() {
+fn the_axis_of_generations_is_steady() {
     let mut screen = live();
     screen.0.update(Input::Resize(120, 40));
     screen.press("4");
-    // The line below a chart: the ends of the axis, and the generation shown.
+    // The line below a chart: the ends of the axis, and the shown generation.
     let axis = |screen: &Screen| {
         let text = screen.text();
         let lines = text.lines().map(|line| line.trim_matches('│'));
@@ -281,12 +281,12 @@ fn the_axis_of_generations_stays_for_a_while() {
     };
     let before = axis(&screen);
     assert_eq!(before.len(), 2, "{before:?}");
-    screen.tell(foraging().events[4].clone());
+    screen.send(foraging().events[4].clone());
     assert_eq!(generation(&screen), 4);
     assert_eq!(axis(&screen), before);
 }
 
-/// Keys select a subtask, below the tree it is explained, and the inspector takes it apart.
+/// Keys select a subtask, which is explained below the tree and shown by the inspector.
 #[test]
 fn a_subtask_is_selected_in_the_hierarchy() {
     let mut screen = screen();
@@ -313,7 +313,7 @@ fn a_subtask_is_selected_in_the_hierarchy() {
 }
 
 #[test]
-fn selecting_puts_an_individual_on_the_stage() {
+fn selecting_an_individual_switches_the_rollout() {
     let mut screen = screen();
     let best = screen.0.app().context().player.subject().unwrap();
     screen.press("6 j 2");
@@ -325,20 +325,20 @@ fn selecting_puts_an_individual_on_the_stage() {
     assert_eq!(screen.0.app().context().player.subject(), Some(best));
 }
 
-/// In a run that was opened from a table of runs, going back is what is named.
+/// A run that was opened from a table of runs names the back key.
 #[test]
 fn the_way_back_is_named() {
     let mut screen = screen();
     assert!(screen.text().contains("q quit"));
     screen.press("6");
     assert!(screen.text().contains("↑↓ select"), "{}", screen.text());
-    let opened = foraging().blank_within();
+    let opened = foraging().blank_with_back();
     assert!(opened.text().contains("esc back"), "{}", opened.text());
     assert!(!opened.text().contains("q quit"));
 }
 
 #[test]
-fn control_characters_of_a_run_are_made_visible() {
+fn control_characters_of_a_run_are_escaped() {
     let mut screen = screen();
     let Event::Generation(mut record) = foraging().events[1].clone() else {
         panic!("no generation");
@@ -347,7 +347,7 @@ fn control_characters_of_a_run_are_made_visible() {
     record.individuals[0].tree = String::from("(Root \u{1b}[31mX\u{9b}2J)");
     let probabilities = record.selection_probabilities[0].get_or_insert_default();
     probabilities.insert(String::from("\u{1b}]0;x\u{7}"), 0.7);
-    screen.tell(Event::Generation(record));
+    screen.send(Event::Generation(record));
     screen.0.update(Input::Message(String::from("a\nb\u{1b}c")));
     for view in ViewId::all() {
         screen.0.open(view);
@@ -357,14 +357,15 @@ fn control_characters_of_a_run_are_made_visible() {
     }
 }
 
-/// The program's output, or what it says is wrong.
+/// The output of the program, or its error message.
 fn frame(arguments: &[&str]) -> Result<String, String> {
     let mut command = common::program();
     command.arg("frame").arg(&foraging().folder).args(arguments);
     let output = common::output(command.env("LC_ALL", "C.UTF-8").env_remove("NO_COLOR"));
-    match output.status.success() {
-        true => Ok(common::stdout(&output)),
-        false => Err(common::stderr(&output)),
+    if output.status.success() {
+        Ok(common::stdout(&output))
+    } else {
+        Err(common::stderr(&output))
     }
 }
 
@@ -385,8 +386,26 @@ fn a_frame_is_printed_without_a_terminal_and_the_same_each_time() {
     assert!(ascii.is_ascii(), "{ascii}");
 }
 
+/// The keys of an export write its file, as in the dashboard.
 #[test]
-fn a_frame_that_cannot_be_made_is_an_error_with_what_is_allowed() {
+fn a_frame_writes_what_its_keys_export() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = common::program();
+    command
+        .current_dir(&folder)
+        .arg("frame")
+        .arg(&foraging().folder);
+    let output = common::output(command.args(["--view", "fitness", "--keys", "e c"]));
+    let said = common::stderr(&output);
+    assert!(output.status.success(), "{said}");
+    let name = "fitness-generation6.csv";
+    let csv = std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(csv.lines().count(), 7, "{csv}");
+    assert!(said.contains(&format!("written: ./{name}")), "{said}");
+}
+
+#[test]
+fn an_impossible_frame_is_an_error_that_names_what_is_allowed() {
     for (arguments, allowed) in [
         (["--size", "80"], "COLUMNSxROWS"),
         (["--view", "arenas"], "population"),

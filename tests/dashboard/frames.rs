@@ -1,4 +1,4 @@
-//! Every view as it looks: characters, and below them their styles, a letter each.
+//! Snapshots of every view: the characters, and below them a letter for the style of each.
 
 use std::fmt::Write;
 
@@ -9,8 +9,8 @@ use ratatui::buffer::{Buffer, Cell};
 
 use super::recorded::{Recorded, Screen, cells, foraging};
 
-/// The characters of a frame, then a letter for the style of each, then what the letters
-/// stand for.
+/// The characters of a frame, then a letter for the style of each, then the meaning of the
+/// letters.
 fn with_styles(frame: &Buffer) -> String {
     let mut styles: Vec<String> = Vec::new();
     let (mut characters, mut letters) = (String::new(), String::new());
@@ -66,7 +66,7 @@ pub const LARGE: (u16, u16) = (200, 60);
 /// Name, theme, signs and size of a frame, and the keys that lead to it.
 pub type Shot = (&'static str, &'static str, Glyphs, (u16, u16), &'static str);
 
-/// Takes frames of a run some seconds after it was opened, and some after the keys.
+/// Checks frames of a run: `seconds` are waited before and after the keys.
 pub fn assert_shots(run: &Recorded, [before, after]: [f64; 2], shots: &[Shot]) {
     for (name, theme, glyphs, size, keys) in shots {
         let mut screen = run.screen(theme, *glyphs, *size);
@@ -117,7 +117,7 @@ fn the_views() {
 }
 
 #[test]
-fn what_opens_over_a_view() {
+fn windows_over_a_view() {
     for (name, size, keys) in [
         ("help_80x24", SMALL, "?"),
         ("help_80x24_scrolled", SMALL, "4 ? page-down down"),
@@ -130,16 +130,16 @@ fn what_opens_over_a_view() {
     }
 }
 
-/// Pausing evolution and freezing the view are two things and look different.
+/// Paused evolution and a frozen display look different.
 #[test]
 fn paused_and_frozen() {
     let mut screen = foraging().blank(Mode::Live, "dark", Unicode);
     let (some, rest) = foraging().events.split_at(4);
     assert_looks("live_before_anything", &screen);
     for event in some {
-        screen.tell(event.clone());
+        screen.send(event.clone());
     }
-    screen.tell(Event::Progress {
+    screen.send(Event::Progress {
         generation: 4,
         lived: 3,
         population: 6,
@@ -149,12 +149,12 @@ fn paused_and_frozen() {
     assert_looks("live_running", &screen);
     screen.press("f");
     for event in &rest[..1] {
-        screen.tell(event.clone());
+        screen.send(event.clone());
     }
     screen.wait(1.0);
     assert_looks("live_frozen", &screen);
     screen.press("f p");
-    screen.tell(Event::Paused);
+    screen.send(Event::Paused);
     screen.wait(1.0);
     assert_looks("live_paused", &screen);
     screen.press("q");

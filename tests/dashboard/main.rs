@@ -1,10 +1,10 @@
-//! The dashboard: the same events and keys give the same frame, every view draws at every
-//! size, and nothing that is told or pressed makes it panic.
+//! The dashboard: the same inputs give the same frame, every view draws at every size, and no
+//! input makes it panic.
 //!
-//! Why it matters: it is the program's face, over lines and terminals that nobody chose; a
-//! panic would take a run of hours with it, and a frame that cannot be made again cannot
-//! be reported or tested. Frames are made by the functions that a terminal's frames are
-//! made by, from recorded runs and simulated keys.
+//! Why it matters: users meet the program here, over any line and on any terminal. A panic
+//! would end a run of hours, and a frame that cannot be reproduced can be neither reported nor
+//! tested. The frames are made from recorded runs and simulated keys by the same functions as
+//! on a terminal.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 

@@ -1,4 +1,4 @@
-//! The mouse: what a click and the wheel do, in the overview, in lists, over a study's runs.
+//! The mouse: clicks and the wheel in the overview, in lists, and in the table of runs.
 
 use maxq_lab::dashboard::{Gesture, Input, Mouse, RunsEffect, ViewId};
 use maxq_lab::hierarchy::Glyphs::Unicode;
@@ -7,7 +7,7 @@ use ratatui::layout::Position;
 use super::recorded::{Screen, foraging};
 use super::runs;
 
-/// Column and row at which a text is on the screen.
+/// The position of a text on the screen.
 fn find(text: &str, wanted: &str) -> Position {
     let mut lines = text.lines().enumerate();
     let found = lines.find_map(|(row, line)| {
@@ -27,7 +27,7 @@ fn selected(screen: &Screen) -> usize {
 }
 
 #[test]
-fn a_click_gives_a_panel_the_focus_and_a_second_opens_it() {
+fn a_click_focuses_a_panel_and_a_second_opens_it() {
     let mut screen = foraging().screen("dark", Unicode, (120, 40));
     act(&mut screen, Gesture::Click, "Fitness");
     let app = screen.0.app();
@@ -77,9 +77,9 @@ fn a_click_selects_a_subtask_of_the_inspector() {
     }
 }
 
-/// In the hierarchy, as its panel and as a view; the inspector speaks of the same subtask.
+/// In the hierarchy, both as a panel and as a view; the inspector shows the same subtask.
 #[test]
-fn a_click_selects_a_subtask_and_a_second_takes_it_apart() {
+fn a_click_selects_a_subtask_and_a_second_inspects_it() {
     let mut screen = foraging().screen("dark", Unicode, (120, 40));
     let tree = screen.0.app().context().inspected_tree().unwrap();
     let last = tree.nodes().len() - 1;
@@ -132,7 +132,7 @@ fn a_click_selects_a_run_and_a_second_opens_it() {
             what: Gesture::Click,
         })
     };
-    // Below header, border and head.
+    // Below header, border and headings.
     assert_eq!(click(&mut table, 3 + 3), None);
     assert_eq!(click(&mut table, 3 + 3), Some(RunsEffect::Open(3)));
     assert_eq!(click(&mut table, 3), None);

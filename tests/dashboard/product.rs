@@ -1,10 +1,10 @@
-//! The full product: every view x size x world x state of the run is drawn, and every key is
-//! pressed in every view and state, in a world of places and in worlds of cells, the sizes in
-//! turn.
+//! The full product: every view is drawn in every size, world and state of the run, and every
+//! key is pressed in every view and state, in one world of places and two worlds of cells. For
+//! keys the sizes alternate.
 //!
-//! Why it matters: frames that somebody has chosen to look at are few, and what goes wrong goes
-//! wrong in the others: a panel that writes over its border, a caption that ends in the middle
-//! of a word, a key that the hint bar names and that does nothing.
+//! Why it matters: nobody looks at most frames, and those are the ones that go wrong: a panel
+//! that draws over its border, a caption that ends in the middle of a word, a key in the hint
+//! bar without an effect.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ use ratatui::buffer::Buffer;
 
 use super::recorded::{Recorded, Screen, cells, foraging};
 
-/// What a run can be like when it is looked at.
+/// The states of a run on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     BeforeAnything,
@@ -60,7 +60,7 @@ impl State {
         }
     }
 
-    /// What stands first on the screen.
+    /// The first word on the screen.
     fn word(self) -> &'static str {
         match self {
             Self::BeforeAnything | Self::Training => "TRAINING",
@@ -73,7 +73,7 @@ impl State {
         }
     }
 
-    /// A dashboard over a run in this state.
+    /// Returns a dashboard over a run in this state.
     fn screen(self, run: &Recorded) -> Screen {
         let mut screen = run.blank(self.mode(), "dark", Unicode);
         let ends = |event: &&Event| matches!(event, Event::Ended { .. });
@@ -90,11 +90,11 @@ impl State {
             _ => lived.chain([progress(9)]).collect(),
         };
         for event in told {
-            screen.tell(event);
+            screen.send(event);
         }
         screen.wait(0.3);
         match self {
-            Self::Paused => drop(screen.tell(Event::Paused)),
+            Self::Paused => drop(screen.send(Event::Paused)),
             Self::Stepping => drop(screen.press("n")),
             Self::Frozen => drop(screen.press("f")),
             Self::Stopped => drop(screen.0.update(Input::Closed)),
@@ -118,10 +118,10 @@ fn progress(generation: u64) -> Event {
 const SIZES: [(u16, u16); 5] = [(80, 24), (120, 40), (200, 60), (40, 12), (57, 17)];
 const TINY: [(u16, u16); 4] = [(20, 5), (1, 1), (0, 0), (39, 60)];
 
-/// What a frame was made of, for messages.
+/// The origin of a frame, for messages.
 type Of = (State, ViewId, (u16, u16));
 
-/// Lines of a frame, a character a cell.
+/// The lines of a frame, one character per cell.
 fn lines(frame: &Buffer) -> Vec<Vec<char>> {
     let width = usize::from(frame.area.width).max(1);
     let rows = frame.content.chunks(width);
@@ -148,7 +148,7 @@ fn text(lines: &[Vec<char>]) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// What holds for every frame.
+/// Checks what holds for every frame.
 fn check(lines: &[Vec<char>], of: Of) {
     let (_, view, (width, height)) = of;
     let text = || text(lines);
@@ -161,7 +161,7 @@ fn check(lines: &[Vec<char>], of: Of) {
         );
         return;
     }
-    // No panel writes over its border, nor over that of another.
+    // No panel draws over its border, or over that of another.
     let panels = panels(lines);
     assert!(!panels.is_empty(), "{of:?}\n{}", text());
     for &[left, top, right, bottom] in &panels {
@@ -183,7 +183,7 @@ fn check(lines: &[Vec<char>], of: Of) {
     }
 }
 
-/// The captions of the panels in parts.
+/// The captions of the panels, in parts.
 fn captions(screen: &Screen) -> Vec<String> {
     let lines = lines(&screen.0.app().frame());
     let tops = panels(&lines).into_iter().map(|[left, top, right, _]| {
@@ -193,7 +193,7 @@ fn captions(screen: &Screen) -> Vec<String> {
     tops.collect()
 }
 
-/// Captions are whole, or lack whole parts, or say that they are cut.
+/// Captions are complete, or lack whole parts, or end with an ellipsis.
 fn check_captions(screen: &mut Screen, of: Of) {
     let short = captions(screen);
     screen.0.update(Input::Resize(250, 60));
@@ -215,8 +215,7 @@ fn check_captions(screen: &mut Screen, of: Of) {
     }
 }
 
-/// The actions that the last line names; of two that are opposite, the one that leads away from
-/// the beginning.
+/// The actions in the hint bar; of two opposite ones, the one that leads away from the start.
 fn named(frame: &Buffer, keys: &KeyMap) -> Vec<Action> {
     let last = lines(frame).pop().unwrap_or_default();
     let last = last.into_iter().collect::<String>() + "  ";
@@ -226,7 +225,7 @@ fn named(frame: &Buffer, keys: &KeyMap) -> Vec<Action> {
         }
         let hint = keys.hint(**action, Signs::of(Unicode));
         hint.is_some_and(|(keys, word)| {
-            let mut words = [word, "resume", "unfreeze", "hold", "go on"].into_iter();
+            let mut words = [word, "resume", "unfreeze", "stop playing"].into_iter();
             words.any(|word| (String::from("  ") + &last).contains(&format!("  {keys} {word}  ")))
         })
     };
@@ -254,8 +253,8 @@ fn every_frame(run: &Recorded) {
     }
 }
 
-/// Back to the view, whatever the last key has opened, with nothing said; in time, and as frozen
-/// and halted as the state has it.
+/// Returns to the view after any key, without a message, in the generation and frozen and
+/// halted as the state requires.
 fn back(screen: &mut Screen, state: State, view: ViewId) {
     screen.press("esc");
     screen.0.open(ViewId::Arena);
@@ -276,11 +275,11 @@ fn back(screen: &mut Screen, state: State, view: ViewId) {
     screen.0.open(view);
 }
 
-/// Presses every key in every view and state, or in every `stride`-th of these, from `first` on.
+/// Presses every key in every view and state, or in every `stride`-th of these from `first` on.
 fn every_key(run: &Recorded, first: usize, stride: usize) {
     let keys = KeyMap::default();
-    // The dearest size is rare; nine and eleven views have no common divisor, so that every
-    // view meets every size.
+    // The most expensive size is rare. Nine sizes and eleven views have no common divisor, so
+    // that every view meets every size.
     let [small, middle, large, smallest, odd] = SIZES;
     let order = [
         small, middle, smallest, odd, small, middle, odd, smallest, large,
@@ -307,7 +306,7 @@ fn press(screen: &mut Screen, keys: &KeyMap, action: Action, of: Of) {
     let effects = screen.0.update(Input::Key(keys.keys(action)[0]));
     let after = screen.0.app().frame();
     let drawn = lines(&after);
-    // What is open over a view has the focus.
+    // An open window has the focus.
     let opens = panels(&drawn).iter().any(|&[left, top, ..]| {
         let title: String = drawn[top][left..].iter().take(12).collect();
         let mut titles = ["Help", "Export", "Question"].into_iter();
@@ -349,7 +348,7 @@ fn every_key_of_foraging() {
     every_key(foraging(), 0, 1);
 }
 
-/// The two worlds of cells have the same views in the same states: each takes a half.
+/// The two worlds of cells have the same views in the same states, so each tests one half.
 #[test]
 fn every_key_of_the_taxi() {
     every_key(&cells("taxi"), 0, 2);
@@ -360,7 +359,7 @@ fn every_key_of_the_cliff() {
     every_key(&cells("cliff"), 1, 2);
 }
 
-/// Every key of an action does it, wherever the action can be had.
+/// Every key of an action performs it, wherever the action is available.
 #[test]
 fn all_keys_of_an_action_do_it() {
     let keys = KeyMap::default();

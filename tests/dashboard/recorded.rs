@@ -15,7 +15,7 @@ use tempfile::TempDir;
 
 use super::common;
 
-/// A run that was recorded.
+/// A recorded run.
 pub struct Recorded {
     pub experiment: &'static dyn AnyExperiment,
     pub events: Vec<Event>,
@@ -24,7 +24,7 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// A run of this scenario, with seed 1.
+    /// Records a run of this scenario with seed 1.
     pub fn new(scenario: &Scenario) -> Self {
         let parent = tempfile::tempdir().unwrap();
         let folder = parent.path().join("run");
@@ -37,19 +37,19 @@ impl Recorded {
         }
     }
 
-    /// A dashboard that has been told nothing.
+    /// Returns a dashboard without events.
     pub fn blank(&self, mode: Mode, theme: &str, glyphs: Glyphs) -> Screen {
         self.blank_from(None, mode, theme, glyphs)
     }
 
-    /// The same, opened from somewhere that going back leads to.
-    pub fn blank_within(&self) -> Screen {
+    /// Returns the same, opened from a list of runs.
+    pub fn blank_with_back(&self) -> Screen {
         let app = self.app(Mode::Replay, "dark", Glyphs::Unicode);
-        self.still(app.within(true))
+        self.offscreen(app.with_back(true))
     }
 
     fn blank_from(&self, start: Option<Start>, mode: Mode, theme: &str, glyphs: Glyphs) -> Screen {
-        self.still(self.app(mode, theme, glyphs).starting_at(start))
+        self.offscreen(self.app(mode, theme, glyphs).starting_at(start))
     }
 
     fn app(&self, mode: Mode, theme: &str, glyphs: Glyphs) -> App {
@@ -64,19 +64,19 @@ impl Recorded {
         ))
     }
 
-    fn still(&self, app: App) -> Screen {
+    fn offscreen(&self, app: App) -> Screen {
         Screen(OffscreenDashboard::new(
             app,
             Archive::new(self.experiment, &self.folder, None),
         ))
     }
 
-    /// A dashboard over the whole run.
+    /// Returns a dashboard over the whole run.
     pub fn screen(&self, theme: &str, glyphs: Glyphs, size: (u16, u16)) -> Screen {
         self.screen_from(None, theme, glyphs, size)
     }
 
-    /// The same, with trials that begin in one state.
+    /// Returns the same, with trials that start in one state.
     pub fn screen_from(
         &self,
         start: Option<Start>,
@@ -87,20 +87,20 @@ impl Recorded {
         let mut screen = self.blank_from(start, Mode::Replay, theme, glyphs);
         screen.0.update(Input::Resize(columns, rows));
         for event in &self.events {
-            screen.tell(event.clone());
+            screen.send(event.clone());
         }
         screen.wait(0.1);
         screen
     }
 }
 
-/// A short run of the foraging task: six generations of eight individuals.
+/// Returns a short run of the foraging task: six generations of eight individuals.
 pub fn foraging() -> &'static Recorded {
     static RUN: OnceLock<Recorded> = OnceLock::new();
     RUN.get_or_init(|| Recorded::new(&common::short(&[])))
 }
 
-/// A short run in a world of cells.
+/// Returns a short run in a world of cells.
 pub fn cells(name: &str) -> Recorded {
     let settings = [
         "evolution.generation_limit=2",
@@ -116,26 +116,26 @@ pub fn cells(name: &str) -> Recorded {
 pub struct Screen(pub OffscreenDashboard);
 
 impl Screen {
-    /// The run tells something.
-    pub fn tell(&mut self, event: Event) -> Vec<Effect> {
+    /// Sends an event of the run.
+    pub fn send(&mut self, event: Event) -> Vec<Effect> {
         self.0.update(Input::Event(Box::new(event)))
     }
 
-    /// Presses keys, by their names.
+    /// Presses keys, given by name.
     pub fn press(&mut self, keys: &str) -> Vec<Effect> {
         let keys = keys.split_whitespace().map(|key| key.parse().unwrap());
         keys.flat_map(|key| self.0.update(Input::Key(key)))
             .collect()
     }
 
-    /// Lets seconds go by, a tenth at a time.
+    /// Lets seconds pass, a tenth at a time.
     pub fn wait(&mut self, seconds: f64) {
         for _ in 0..(seconds * 10.0).round() as u32 {
             self.0.update(Input::Tick(Duration::from_millis(100)));
         }
     }
 
-    /// What is on the screen, without styles.
+    /// Returns the text on the screen.
     pub fn text(&self) -> String {
         let frame = self.0.app().frame();
         maxq_lab::dashboard::render(&frame, maxq_lab::dashboard::FrameFormat::Text)

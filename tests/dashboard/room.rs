@@ -1,5 +1,5 @@
-//! Little room: at 80x24, and in the panels of 120x40, nothing that a person needs is cut; what
-//! is cut says so.
+//! Little room: at 80x24, and in the panels of 120x40, nothing essential is cut, and cut text
+//! ends with an ellipsis.
 
 use maxq_lab::hierarchy::Glyphs::Unicode;
 
@@ -25,7 +25,7 @@ fn panel(text: &str, title: &str) -> String {
     joined.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The longest state names, in the overview's arena too.
+/// Holds for the longest names of states, also in the arena of the overview.
 #[test]
 fn the_state_is_named_in_full() {
     for (case, state) in [
@@ -59,7 +59,7 @@ fn the_state_is_named_in_full() {
     }
 }
 
-/// A number that is cut is another number.
+/// A cut number would be another number.
 #[test]
 fn lengths_of_trials_are_whole_or_left_out() {
     for size in [SMALL, (60, 24), (40, 12), MIDDLE] {
@@ -93,10 +93,10 @@ fn state_types_are_named_in_full_in_the_policy_panel() {
     }
 }
 
-/// Names of subtasks are shortened so that they can be told apart; temperature and rule of
-/// every node of the call stack are there.
+/// Shortened names of subtasks stay distinct; temperature and rule of every node of the call
+/// stack are visible.
 #[test]
-fn the_stepper_says_everything_in_little_room() {
+fn the_stepper_is_complete_in_little_room() {
     let start = learned()
         .experiment
         .read_start("in taxi to B at 2,2")
@@ -121,7 +121,7 @@ fn the_stepper_says_everything_in_little_room() {
 
 /// Below the table of the population, where there is room.
 #[test]
-fn the_hierarchy_of_the_selected_individual_is_written_in_full() {
+fn the_hierarchy_of_the_selected_individual_is_complete() {
     let mut screen = foraging().screen("dark", Unicode, SMALL);
     screen.press("6 j j");
     let selected = screen.0.app().context().selected().unwrap();
@@ -130,9 +130,9 @@ fn the_hierarchy_of_the_selected_individual_is_written_in_full() {
     assert!(population.contains(&whole), "{whole}: {population}");
 }
 
-/// Where chance takes the place of fitness, the first in rank are not the best.
+/// With random selection, the first ranks are not the best individuals.
 #[test]
-fn ranks_by_chance_are_called_so() {
+fn ranks_by_chance_are_marked() {
     let run = Recorded::new(&common::short(&["evolution.selection=random"]));
     let mut screen = run.screen("dark", Unicode, MIDDLE);
     for (key, words) in [
@@ -153,9 +153,9 @@ fn ranks_by_chance_are_called_so() {
     );
 }
 
-/// A scenario that is not quite the shipped one of its name says in what.
+/// A scenario that differs from the built-in one of its name says in what.
 #[test]
-fn settings_that_were_changed_are_told() {
+fn changed_settings_are_named() {
     let run = Recorded::new(&common::short(&["evolution.selection=random"]));
     let screen = run.screen("dark", Unicode, MIDDLE);
     let status = panel(&screen.text(), "Status");
@@ -169,9 +169,9 @@ fn settings_that_were_changed_are_told() {
     assert!(text.contains("evolution.generation_limit=6"), "{text}");
 }
 
-/// Both sides of a comparison are seen to their ends, in little room by pages.
+/// Both sides of a comparison can be read to their ends, in little room by pages.
 #[test]
-fn a_comparison_is_seen_to_its_end() {
+fn a_comparison_can_be_read_to_its_end() {
     let mut screen = learned().screen("dark", Unicode, SMALL);
     screen.press("c");
     assert!(!screen.text().contains("selects"), "{}", screen.text());
@@ -182,7 +182,7 @@ fn a_comparison_is_seen_to_its_end() {
     assert!(screen.text().contains("selected: rank 1"));
 }
 
-/// What a chart of the inspector shows.
+/// The inspector names what its charts show.
 #[test]
 fn charts_of_the_inspector_say_what_they_show() {
     let mut screen = learned().screen("dark", Unicode, SMALL);
@@ -194,7 +194,7 @@ fn charts_of_the_inspector_say_what_they_show() {
     assert!(!screen.text().contains('…'), "{}", screen.text());
 }
 
-/// Help that is longer than the screen says that it goes on.
+/// Help that is longer than the screen marks the rest.
 #[test]
 fn long_help_says_that_there_is_more() {
     let mut screen = foraging().screen("dark", Unicode, SMALL);
@@ -204,9 +204,9 @@ fn long_help_says_that_there_is_more() {
     assert!(screen.text().contains("▲ 12 more"), "{}", screen.text());
 }
 
-/// What does not fit ends with a sign that says so.
+/// Text that does not fit ends with an ellipsis.
 #[test]
-fn what_is_cut_says_so() {
+fn cut_text_ends_with_an_ellipsis() {
     let mut screen = foraging().screen("dark", Unicode, (44, 14));
     screen.press("t . . .");
     let text = screen.text();

@@ -1,16 +1,16 @@
-//! The table of a study's runs: what stands in it, what its keys do, at every size.
+//! The table of a study's runs: its contents and its keys, at every size.
 
 use maxq_lab::dashboard::keys::{Action, Key, KeyMap};
 use maxq_lab::dashboard::look::{Look, Signs, Theme};
 use maxq_lab::dashboard::{
-    FrameFormat, RunRow, RunsEffect, RunsNews, RunsTable, Standing, Work, render,
+    FrameFormat, RowStatus, RunRow, RunsEffect, RunsNews, RunsTable, Work, render,
 };
 use maxq_lab::hierarchy::Glyphs;
 use proptest::prelude::*;
 
 use super::frames::assert_frame;
 
-fn run(place: usize, standing: Standing, generations: u64) -> RunRow {
+fn run(place: usize, status: RowStatus, generations: u64) -> RunRow {
     let arms = ["evolved", "random_selection", "hand_designed"];
     let scenario = 1 + place / arms.len() % 2;
     let start = 900.0 + 10.0 * place as f64;
@@ -19,28 +19,28 @@ fn run(place: usize, standing: Standing, generations: u64) -> RunRow {
         scenario: format!("environment-{scenario}"),
         arm: String::from(arms[place % arms.len()]),
         seed: 1 + (place / (2 * arms.len())) as u64,
-        standing,
+        status,
         generations,
         course: course.collect(),
-        fresh: (standing == Standing::Done).then_some(402.25 + place as f64),
-        trouble: (standing == Standing::Unreadable).then(|| String::from("run.json: \u{1b}[2J")),
+        fresh: (status == RowStatus::Done).then_some(402.25 + place as f64),
+        trouble: (status == RowStatus::Unreadable).then(|| String::from("run.json: \u{1b}[2J")),
     }
 }
 
-/// A study under way: some runs of every standing, and many that wait.
+/// A study in progress: runs of every status, and many that wait.
 fn rows() -> Vec<RunRow> {
     let begun = [
-        (Standing::Done, 40),
-        (Standing::Done, 60),
-        (Standing::Evolved, 12),
-        (Standing::Running, 9),
-        (Standing::BrokenOff, 3),
-        (Standing::Unreadable, 0),
-        (Standing::Running, 0),
+        (RowStatus::Done, 40),
+        (RowStatus::Done, 60),
+        (RowStatus::Evolved, 12),
+        (RowStatus::Running, 9),
+        (RowStatus::Interrupted, 3),
+        (RowStatus::Unreadable, 0),
+        (RowStatus::Running, 0),
     ];
-    let waiting = [(Standing::Waiting, 0); 40];
+    let waiting = [(RowStatus::Waiting, 0); 40];
     let all = begun.into_iter().chain(waiting).enumerate();
-    all.map(|(place, (standing, n))| run(place, standing, n))
+    all.map(|(place, (status, n))| run(place, status, n))
         .collect()
 }
 
@@ -54,7 +54,7 @@ fn blank(theme: &str, glyphs: Glyphs, (columns, rows): (u16, u16)) -> RunsTable 
 
 pub fn table(theme: &str, glyphs: Glyphs, size: (u16, u16)) -> RunsTable {
     let mut table = blank(theme, glyphs, size);
-    table.tell(rows());
+    table.set_rows(rows());
     table
 }
 
@@ -82,26 +82,26 @@ fn the_table() {
     }
 }
 
-/// Every run is opened as the one that was pointed at, whatever the table is sorted by, and
-/// only if there is something to see.
+/// Enter opens the selected run, whatever the table is sorted by, and only if there is
+/// something to show.
 #[test]
-fn the_run_that_is_pointed_at_is_opened() {
+fn enter_opens_the_selected_run() {
     let mut table = table("dark", Glyphs::Unicode, (80, 24));
     assert_eq!(press(&mut table, "enter"), Some(RunsEffect::Open(0)));
     assert_eq!(press(&mut table, "j j j enter"), Some(RunsEffect::Open(3)));
-    // Sorted by state: running ones first; the selected run stays selected.
+    // Sorted by state, running ones first; the selected run stays selected.
     assert_eq!(press(&mut table, "s enter"), Some(RunsEffect::Open(3)));
     assert_eq!(press(&mut table, "j enter"), Some(RunsEffect::Open(6)));
     assert_eq!(press(&mut table, "G enter"), None);
-    assert!(text(&table).contains("this run has not begun"));
-    // Turned round, what was last is first.
+    assert!(text(&table).contains("this run has not started"));
+    // In reverse order the last run is first.
     assert_eq!(press(&mut table, "S end enter"), Some(RunsEffect::Open(3)));
     assert_eq!(press(&mut table, "q"), Some(RunsEffect::Leave));
 }
 
-/// What is wrong with a run is said, not opened; nothing of it steers the terminal.
+/// A run with an error shows the error instead of opening; control characters are escaped.
 #[test]
-fn what_cannot_be_read_says_why() {
+fn an_unreadable_run_says_why() {
     let mut table = table("dark", Glyphs::Unicode, (80, 24));
     assert_eq!(press(&mut table, "j j j j j enter"), None);
     assert!(text(&table).contains("run.json: \\u{1b}[2J"));
@@ -109,27 +109,26 @@ fn what_cannot_be_read_says_why() {
     assert!(!text(&table).contains("run.json"));
 }
 
-/// Only news make a new frame: a study that waits sends nothing over the line.
+/// Only changes need a redraw, so that a waiting study sends no bytes.
 #[test]
-fn the_same_rows_again_are_no_news() {
+fn the_same_rows_need_no_redraw() {
     let mut table = blank("dark", Glyphs::Unicode, (80, 24));
-    assert!(text(&table).contains("being read"));
-    assert!(table.tell(rows()));
-    assert!(!table.tell(rows()));
+    assert!(text(&table).contains("reading the runs"));
+    assert!(table.set_rows(rows()));
+    assert!(!table.set_rows(rows()));
     let mut changed = rows();
     changed[3].generations += 1;
-    assert!(table.tell(changed));
+    assert!(table.set_rows(changed));
 }
 
-/// Work of the program itself is never ended without a question, and nothing is asked once it
-/// is over.
+/// Work of the program is never ended without a question, and nothing is asked once it is over.
 #[test]
-fn work_under_way_is_asked_about() {
+fn quitting_during_work_asks_a_question() {
     let mut table = blank("dark", Glyphs::Unicode, (80, 24));
     let left = Some(std::time::Duration::from_secs(754));
     let news = |work| RunsNews { rows: rows(), work };
-    assert!(table.take_in(news(Some(Work { left }))));
-    assert!(!table.take_in(news(Some(Work { left }))));
+    assert!(table.update(news(Some(Work { left }))));
+    assert!(!table.update(news(Some(Work { left }))));
     assert!(text(&table).contains("about 12 min left"));
     assert_eq!(press(&mut table, "q"), None);
     assert_frame("runs_question_80x24", &table.frame());
@@ -137,7 +136,7 @@ fn work_under_way_is_asked_about() {
     assert_eq!(press(&mut table, "q d"), Some(RunsEffect::Detach));
     assert_eq!(press(&mut table, "q y"), Some(RunsEffect::Leave));
     assert_eq!(press(&mut table, "q"), None);
-    assert!(table.take_in(news(None)));
+    assert!(table.update(news(None)));
     assert!(!text(&table).contains("Question"));
     assert_eq!(press(&mut table, "q"), Some(RunsEffect::Leave));
 }
@@ -148,17 +147,17 @@ fn value() -> impl Strategy<Value = f64> {
 
 fn any_row() -> impl Strategy<Value = RunRow> {
     let texts = (any::<String>(), any::<String>());
-    let standing = prop::sample::select(Standing::ALL.to_vec());
+    let status = prop::sample::select(RowStatus::ALL.to_vec());
     let course = prop::collection::vec(value(), 0..90);
     let fresh = prop::option::of(value());
     let numbers = (any::<u64>(), any::<u64>());
-    (texts, standing, course, fresh, numbers).prop_map(
-        |((scenario, arm), standing, course, fresh, (seed, generations))| RunRow {
+    (texts, status, course, fresh, numbers).prop_map(
+        |((scenario, arm), status, course, fresh, (seed, generations))| RunRow {
             scenario,
             trouble: Some(arm.clone()),
             arm,
             seed,
-            standing,
+            status,
             generations,
             course,
             fresh,
@@ -178,14 +177,14 @@ proptest! {
     ) {
         let glyphs = if ascii { Glyphs::Ascii } else { Glyphs::Unicode };
         let mut table = blank("dark", glyphs, size);
-        table.tell(rows.clone());
+        table.set_rows(rows.clone());
         for (index, action) in keys.iter().enumerate() {
             let key: Key = action.default_keys()[0].parse().unwrap();
             if let Some(RunsEffect::Open(place)) = table.key(key) {
                 prop_assert!(place < rows.len());
             }
             if index == 9 {
-                table.tell(rows[..fewer.min(rows.len())].to_vec());
+                table.set_rows(rows[..fewer.min(rows.len())].to_vec());
             }
             let frame = table.frame();
             let mut symbols = frame.content.iter().flat_map(|cell| cell.symbol().chars());

@@ -1,4 +1,4 @@
-//! Worlds of cells on the screen: the numbers of thesis 2.2.2, values and greedy actions.
+//! Worlds of cells on the screen: the numbers of Thesis 2.2.2, values and greedy actions.
 
 use std::sync::OnceLock;
 
@@ -11,7 +11,7 @@ use super::recorded::{Recorded, Screen, cells};
 const HAND_MADE: &str = "(Root (Get (NavigateToPassenger North South East West) Pickup) \
      (Put (NavigateToDestination North South East West) Putdown))";
 
-/// The README's recipe: nothing varies, so that all that happens is learning.
+/// A run without variation, in which individuals only learn.
 pub fn learned() -> &'static Recorded {
     static RUN: OnceLock<Recorded> = OnceLock::new();
     RUN.get_or_init(|| {
@@ -27,7 +27,7 @@ pub fn learned() -> &'static Recorded {
     })
 }
 
-/// The state of thesis Figure 2.6, from which the passenger is one cell to the north.
+/// The state of Thesis Figure 2.6, in which the passenger is one cell to the north.
 const FIGURE_2_6: &str = "from R to B at 0,3";
 
 /// The numbers after a name in the stepper's table.
@@ -41,9 +41,9 @@ fn row(text: &str, name: &str) -> Vec<f64> {
     words.map_while(|word| word.parse().ok()).collect()
 }
 
-/// V(Root, s1) = 10 and its decomposition (thesis 2.2.2), read off the frame.
+/// V(Root, s1) = 10 and its decomposition (Thesis 2.2.2), read from the frame.
 #[test]
-fn the_numbers_of_the_taxi_are_seen() {
+fn the_stepper_shows_the_numbers_of_the_thesis() {
     for (glyphs, size) in [
         (Unicode, (120, 40)),
         (Unicode, (200, 60)),
@@ -70,14 +70,14 @@ fn the_numbers_of_the_taxi_are_seen() {
             "{text}"
         );
         assert!(text.contains("from R to B"), "{text}");
-        // The next trial begins there too.
+        // The next trial starts in the same state.
         screen.press("N .");
         assert_eq!(row(&screen.text(), " Root  V"), [10.0]);
     }
 }
 
 #[test]
-fn values_and_greedy_actions_stand_in_the_cells() {
+fn cells_show_values_and_greedy_actions() {
     let start = learned().experiment.read_start(FIGURE_2_6).unwrap();
     for (name, theme, glyphs, size, keys) in [
         ("cells_taxi_80x24", "dark", Unicode, (80, 24), "2"),
@@ -119,8 +119,8 @@ fn values_and_greedy_actions_stand_in_the_cells() {
     assert!(screen.text().contains(" 10.0"), "{}", screen.text());
 }
 
-/// The cells of the stepper are as they were learned by the end of the step shown, however far
-/// the rollout has gone on, and the screen says so.
+/// The cells of the stepper show what was learned by the end of the shown step, however far the
+/// rollout has advanced, and the screen says so.
 #[test]
 fn the_stepper_shows_the_cells_of_its_step() {
     let unlearned = cells("cliff");
@@ -161,9 +161,9 @@ fn the_stepper_shows_the_cells_of_its_step() {
     assert_eq!(arena(&screen.text()), arena(&frame));
 }
 
-/// A world of cells that is not the taxi's, wider than high, with a cliff in it.
+/// A world of cells that is wider than high, with hazards.
 #[test]
-fn the_cliff_has_room_in_the_overview() {
+fn the_cliff_fits_into_the_overview() {
     let cliff = cells("cliff");
     for (name, glyphs) in [
         ("cells_cliff_overview", Unicode),
@@ -175,10 +175,10 @@ fn the_cliff_has_room_in_the_overview() {
     }
 }
 
-/// Eleven rows of cells do not fit into the overview of a small terminal: the world is there
-/// nevertheless, and its cells where there is room for them.
+/// Eleven rows of cells do not fit into the overview of a small terminal: the world is drawn
+/// without cells there, and with cells in its own view.
 #[test]
-fn a_world_of_many_cells_is_seen_in_a_small_overview() {
+fn a_world_of_many_cells_is_drawn_in_a_small_overview() {
     let rooms = cells("four-rooms");
     let mut screen = rooms.screen("dark", Unicode, (80, 24));
     screen.wait(1.0);
@@ -188,9 +188,9 @@ fn a_world_of_many_cells_is_seen_in_a_small_overview() {
     assert_looks("cells_four_rooms_arena", &screen);
 }
 
-/// What is not to be had is said with what is.
+/// The error names the allowed states.
 #[test]
-fn a_state_that_cannot_be_is_refused() {
+fn an_impossible_start_state_is_refused() {
     for wrong in [
         "from R to X at 0,3",
         "from R to B",

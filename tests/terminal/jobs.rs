@@ -110,7 +110,7 @@ fn without_a_shell_that_could_continue_it_the_program_does_not_stop() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.press("\u{1a}");
-    pty.wait_for("no shell waits");
+    pty.wait_for("no shell is there");
     place.wait_for_evolution();
     pty.signal("TSTP");
     place.wait_for_evolution();

@@ -24,9 +24,9 @@ fn a_run_is_paused_stepped_quit_and_resumed() {
     pty.press("\u{1b}");
     pty.wait_gone("Help");
     pty.press("q");
-    pty.wait_for("Save the run and leave?");
+    pty.wait_for("Save the run and quit?");
     pty.press("n");
-    pty.wait_gone("Save the run and leave?");
+    pty.wait_gone("Save the run and quit?");
     leave(&mut pty);
     pty.wait_for("resume with: maxq-lab resume");
     place.assert_saved();
@@ -93,7 +93,7 @@ fn a_run_is_handed_over_to_a_background_process() {
     let place = Place::new();
     let mut pty = place.start(&[]);
     pty.press("q");
-    pty.wait_for("let the run go on without a terminal");
+    pty.wait_for("let the run continue without a terminal");
     pty.press("d");
     wait_for_good_end(&mut pty, 0);
     pty.wait_for("continues the run");

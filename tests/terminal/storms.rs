@@ -26,7 +26,7 @@ fn random_keys_and_bursts_of_resizes_do_no_harm() {
     pty.press("\u{1b}\u{1b}\u{1b}1");
     wait_until("the header", || pty.screen().contains("seed 1"));
     pty.press("q");
-    pty.wait_for("Save the run and leave?");
+    pty.wait_for("Save the run and quit?");
     pty.press("y");
     wait_for_good_end(&mut pty, USER_STOP);
     place.assert_saved();

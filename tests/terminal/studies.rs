@@ -67,7 +67,7 @@ fn a_running_run_is_watched_until_it_is_killed() {
     runs.wait().unwrap();
     pty.wait_for("STOPPED");
     pty.press("q");
-    pty.wait_for("1 broken off");
+    pty.wait_for("1 interrupted");
     pty.press("\u{3}");
     wait_for_good_end(&mut pty, 0);
 }
@@ -144,7 +144,7 @@ fn quitting_a_study_asks_whether_to_stop_it() {
     let mut pty = start();
     pty.wait_for("1 running");
     pty.press("q");
-    pty.wait_for("go on with a progress bar");
+    pty.wait_for("continue with a progress bar");
     pty.press("d");
     pty.wait_given_back();
     pty.wait_for("0/1");

@@ -13,7 +13,7 @@ use crate::cli::signals::{SignalWatcher, spawn};
 use crate::cli::watch::INTERVAL;
 use crate::dashboard::session::{Exit, RunsExit, RunsSession, Source};
 use crate::dashboard::terminal::Terminal;
-use crate::dashboard::{RunRow, RunsNews, Standing};
+use crate::dashboard::{RowStatus, RunRow, RunsNews};
 use crate::lab::{Liveness, Recording, Watch, lasting_experiment};
 use crate::report::{RunState, RunStatus, StatusWatch, Study, course};
 
@@ -77,7 +77,7 @@ fn open(
         None => Source::recorded(recording),
     };
     let session = dashboard.session(experiment, folder, source, terminal)?;
-    Ok(session.within().run(&signals.received)?)
+    Ok(session.with_back().run(&signals.received)?)
 }
 
 /// A thread that reads a study again and again until this is dropped.
@@ -146,14 +146,14 @@ fn row(
         scenario: study.scenario(&status.run).name.clone(),
         arm: study.arm(&status.run).name.clone(),
         seed: status.run.seed,
-        standing: match status.stage {
-            _ if failure.is_some() => Standing::Failed,
-            RunState::Done => Standing::Done,
-            RunState::Evolved => Standing::Evolved,
-            RunState::Running => Standing::Running,
-            RunState::Interrupted => Standing::BrokenOff,
-            RunState::Waiting => Standing::Waiting,
-            RunState::Unreadable => Standing::Unreadable,
+        status: match status.stage {
+            _ if failure.is_some() => RowStatus::Failed,
+            RunState::Done => RowStatus::Done,
+            RunState::Evolved => RowStatus::Evolved,
+            RunState::Running => RowStatus::Running,
+            RunState::Interrupted => RowStatus::Interrupted,
+            RunState::Waiting => RowStatus::Waiting,
+            RunState::Unreadable => RowStatus::Unreadable,
         },
         generations: status.generations,
         course: past.unwrap_or(status.best_steps),

@@ -1,4 +1,4 @@
-//! What clicks and the wheel do to the dashboard of a run.
+//! The response of the dashboard to clicks and the mouse wheel.
 
 use ratatui::layout::{Position, Rect};
 
@@ -12,9 +12,9 @@ use crate::dashboard::view_id::ViewId;
 use crate::dashboard::views::panels;
 
 impl App {
-    /// Does what the mouse asks for.
+    /// Responds to a mouse gesture.
     pub(super) fn mouse(&mut self, mouse: Mouse) -> Vec<Effect> {
-        // A click closes what is open, a question too: that answers nothing.
+        // A click closes any open window. A question is closed without an answer.
         match self.overlay.take() {
             Some(Overlay::Help { scroll }) => {
                 self.scroll_help(scroll, mouse.what.scrolls());
@@ -41,13 +41,14 @@ impl App {
             (ViewId::Overview, clicked) => had_focus && clicked != Clicked::Selected,
             (_, clicked) => clicked == Clicked::Again,
         };
-        match opens {
-            true => self.perform(Action::Open),
-            false => Vec::new(),
+        if opens {
+            self.perform(Action::Open)
+        } else {
+            Vec::new()
         }
     }
 
-    /// The view at a place of the screen, and its area with the border.
+    /// Returns the view at a position of the screen, and its area including the border.
     fn place_at(&self, at: Position) -> Option<(ViewId, Rect)> {
         let (width, height) = self.context.size;
         let body = body(Rect::new(0, 0, width, height));

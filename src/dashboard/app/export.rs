@@ -7,18 +7,18 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::style::{Color, Modifier};
 use thiserror::Error;
 
-/// How a frame is written.
+/// The format of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameFormat {
-    /// The characters alone.
+    /// Plain characters.
     Text,
-    /// Characters with the terminal's codes for styles.
+    /// Characters with ANSI escape codes for styles.
     Ansi,
-    /// A picture.
+    /// An SVG picture.
     Svg,
 }
 
-/// A name that no format has.
+/// An unknown name of a format.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("found {found:?}; allowed: text, ansi, svg")]
 pub struct UnknownFormat {
@@ -41,7 +41,7 @@ impl FromStr for FrameFormat {
     }
 }
 
-/// Writes a frame.
+/// Renders a frame in a format.
 #[must_use]
 pub fn render(buffer: &Buffer, format: FrameFormat) -> String {
     match format {
@@ -84,7 +84,7 @@ fn ansi(buffer: &Buffer) -> String {
     ansi
 }
 
-/// The codes of a cell's style after a reset.
+/// Returns the SGR codes of a cell's style, to follow a reset.
 fn codes(cell: &Cell) -> String {
     let mut codes = String::new();
     for (modifier, code) in [
@@ -112,7 +112,7 @@ fn codes(cell: &Cell) -> String {
     codes
 }
 
-/// A colour's place in the 256-colour palette.
+/// Returns the index of a colour in the 256-colour palette.
 fn index(colour: Color) -> u8 {
     const NAMED: [Color; 16] = [
         Color::Black,
@@ -138,7 +138,7 @@ fn index(colour: Color) -> u8 {
     }
 }
 
-/// The palette's colour as red, green, blue: the 16 of xterm, the 6x6x6 cube, 24 greys.
+/// Returns a palette colour as red, green, blue: xterm's 16 colours, the 6x6x6 cube, 24 greys.
 fn rgb(colour: Color, reset: [u8; 3]) -> [u8; 3] {
     const BASIC: [[u8; 3]; 16] = [
         [0, 0, 0],
@@ -181,14 +181,15 @@ fn svg(buffer: &Buffer) -> String {
         f64::from(buffer.area.width) * CELL[0],
         f64::from(buffer.area.height) * CELL[1],
     );
-    // A theme for bright terminals writes dark text.
+    // Dark text means that the theme is for a light background.
     let bright = buffer
         .content
         .iter()
         .any(|cell| cell.fg == Color::Indexed(235));
-    let (paper, ink) = match bright {
-        true => ([255; 3], [0; 3]),
-        false => ([22, 22, 26], [222; 3]),
+    let (paper, ink) = if bright {
+        ([255; 3], [0; 3])
+    } else {
+        ([22, 22, 26], [222; 3])
     };
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.1} {height:.1}\" \
@@ -215,7 +216,8 @@ fn is_braille(c: char) -> bool {
     ('\u{2800}'..='\u{28ff}').contains(&c)
 }
 
-/// Draws the dots of braille patterns: few fonts have them in the width of the others.
+/// Draws the dots of a braille pattern, because few fonts have braille in the width of their
+/// other characters.
 fn dots(svg: &mut String, text: &str, (left, top): (f64, f64), colour: [u8; 3]) {
     /// Column and row of the dot of each bit.
     const PLACES: [(u8, u8); 8] = [
@@ -252,7 +254,7 @@ fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Cells of one style in a row.
+/// Draws adjacent cells of one style.
 fn run(svg: &mut String, (x, y): (usize, usize), cells: &[Cell], (paper, ink): ([u8; 3], [u8; 3])) {
     let Some(first) = cells.first() else { return };
     let has = |modifier| first.modifier.contains(modifier);

@@ -1,4 +1,4 @@
-//! The dashboard of one run: its state, what keys and clicks do to it, and its frames.
+//! The dashboard of one run: its state, its response to input, and its frames.
 
 mod clicks;
 mod export;

@@ -1,32 +1,33 @@
-//! A dashboard without a terminal: for single frames and for tests.
+//! A dashboard without a terminal, for single frames and for tests.
 
 use super::state::App;
 use crate::dashboard::context::{Effect, Input};
 use crate::dashboard::view_id::ViewId;
 use crate::lab::inspection::Archive;
 
-/// A dashboard without a terminal, over a run that is on disk. It fetches what the
-/// dashboard asks for at once; what cannot be done without a terminal or a run under way
-/// it hands on.
+/// A dashboard without a terminal, over a recorded run.
+///
+/// It loads the populations that the dashboard requests at once, and returns all other effects
+/// to its caller.
 pub struct OffscreenDashboard {
     app: App,
     archive: Archive,
 }
 
 impl OffscreenDashboard {
-    /// A dashboard and where it fetches populations from.
+    /// Creates a dashboard that loads populations from `archive`.
     #[must_use]
     pub fn new(app: App, archive: Archive) -> Self {
         Self { app, archive }
     }
 
-    /// The dashboard.
+    /// Returns the dashboard.
     #[must_use]
     pub fn app(&self) -> &App {
         &self.app
     }
 
-    /// Takes in what happened; returns what was not done about it.
+    /// Updates the dashboard; returns the effects that are left to the caller.
     pub fn update(&mut self, input: Input) -> Vec<Effect> {
         let effects = self.app.update(input);
         self.run_effects(effects)
@@ -38,14 +39,13 @@ impl OffscreenDashboard {
         self.run_effects(effects);
     }
 
-    /// Travels to the generation with this number, or the nearest that there is.
+    /// Shows the generation with this number, or the nearest one.
     pub fn travel_to(&mut self, generation: u64) {
         let effects = self.app.travel_to(generation);
         self.run_effects(effects);
     }
 
-    /// Whether the frame drawn last is not what there is to see now; see
-    /// [`App::take_dirty`].
+    /// Returns whether a redraw is needed and clears the flag; see [`App::take_dirty`].
     pub fn take_dirty(&mut self) -> bool {
         self.app.take_dirty()
     }

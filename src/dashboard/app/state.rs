@@ -1,4 +1,4 @@
-//! The dashboard's state and its two functions.
+//! The state of the dashboard, and its two functions: update and draw.
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ use crate::dashboard::views::{self, View, panels};
 use crate::lab::Event;
 use crate::lab::inspection::Start;
 
-/// The dashboard.
+/// The dashboard of one run.
 pub struct App {
     pub(super) context: ViewContext,
     pub(super) views: Vec<(ViewId, Box<dyn View>)>,
@@ -31,7 +31,7 @@ pub struct App {
 }
 
 impl App {
-    /// A dashboard over what lies on a context.
+    /// Creates a dashboard over a context; it opens with the overview.
     #[must_use]
     pub fn new(context: ViewContext) -> Self {
         Self {
@@ -43,55 +43,56 @@ impl App {
         }
     }
 
-    /// What the person has chosen to look at.
+    /// Returns the context that the views read.
     #[must_use]
     pub fn context(&self) -> &ViewContext {
         &self.context
     }
 
-    /// The view on the screen.
+    /// Returns the view on the screen.
     #[must_use]
     pub fn view(&self) -> ViewId {
         self.view
     }
 
-    /// Opens a view.
+    /// Opens a view; returns the effects that the caller must run.
     pub fn open(&mut self, view: ViewId) -> Vec<Effect> {
         self.view = view;
         self.dirty = true;
         self.prepare()
     }
 
-    /// The same dashboard, opened from somewhere that going back leads to.
+    /// Sets whether the dashboard was opened from a list of runs to which the user can return.
     #[must_use]
-    pub fn within(mut self, within: bool) -> Self {
-        self.context.within = within;
+    pub fn with_back(mut self, has_back: bool) -> Self {
+        self.context.has_back = has_back;
         self
     }
 
-    /// Lets the trials that are watched begin there.
+    /// Lets the trials of rollouts start at `start`.
     #[must_use]
     pub fn starting_at(mut self, start: Option<Start>) -> Self {
         if let Some(start) = start {
-            self.context.player.begin_at(start);
+            self.context.player.start_at(start);
         }
         self
     }
 
-    /// Travels to the generation with this number, or the nearest that there is.
+    /// Shows the generation with this number, or the nearest one; returns the effects that the
+    /// caller must run.
     pub fn travel_to(&mut self, generation: u64) -> Vec<Effect> {
         self.context.travel_to(generation);
         self.dirty = true;
         self.prepare()
     }
 
-    /// Whether the frame drawn last is not what there is to see now. Asking takes the
-    /// answer: who is told to draw must do it.
+    /// Returns whether a redraw is needed and clears the flag; a caller that gets `true` must
+    /// draw.
     pub fn take_dirty(&mut self) -> bool {
         std::mem::take(&mut self.dirty)
     }
 
-    /// Takes in what happened; returns what is to be done about it.
+    /// Updates the state; returns the effects that the caller must run.
     pub fn update(&mut self, input: Input) -> Vec<Effect> {
         let mut effects = Vec::new();
         match input {
@@ -107,7 +108,8 @@ impl App {
                 self.dirty = true;
                 self.context.size = (columns, rows);
             }
-            // Events may come in hundreds at once; what follows from them waits for the tick.
+            // Hundreds of events may arrive at once, so their consequences wait for the next
+            // tick.
             Input::Event(event) => {
                 self.event(*event);
                 return effects;
@@ -134,7 +136,7 @@ impl App {
         let context = &mut self.context;
         match &event {
             Event::Progress { control_steps, .. } => {
-                // A run that is watched may be resumed by somebody.
+                // A watched run may be resumed by another process.
                 context.closed = false;
                 context.pace.steps(*control_steps);
             }
@@ -155,14 +157,14 @@ impl App {
         self.dirty |= said != self.context.message().is_some();
     }
 
-    /// Puts on the player what is looked at, and lets the views on the screen compute what
-    /// they draw.
+    /// Loads the inspected individual into the player, and lets the views on the screen
+    /// precompute what they draw.
     fn prepare(&mut self) -> Vec<Effect> {
         let on_screen = self.on_screen();
         let mut effects = Vec::new();
         if self.shows_rollout() {
             let (wanted, by_choice) = (self.context.wanted(), !self.context.follows());
-            let load = self.context.player.want(wanted, by_choice);
+            let load = self.context.player.switch_to(wanted, by_choice);
             effects.extend(load.map(|generation| Effect::Load { generation }));
         }
         for (id, view) in &mut self.views {
@@ -179,7 +181,7 @@ impl App {
         views.any(View::needs_rollout)
     }
 
-    /// The view that the view on the screen leads to.
+    /// Returns the view that the open key leads to from here.
     fn opens(&self) -> Option<ViewId> {
         self.view_of(self.view)?.opens()
     }
@@ -194,14 +196,13 @@ impl App {
         }
     }
 
-    /// Between header and hint bar.
     fn body(&self) -> Rect {
         let (width, height) = self.context.size;
         body(Rect::new(0, 0, width, height))
     }
 
-    /// The view that keys act on: the one on the screen, in the overview the panel that
-    /// has the focus.
+    /// Returns the view that keys act on: the focused panel in the overview, else the view on
+    /// the screen.
     fn active(&self) -> ViewId {
         match self.view {
             ViewId::Overview => self.context.focus,
@@ -221,7 +222,8 @@ impl App {
         self.perform(action)
     }
 
-    /// Does what is asked for: the view that keys act on first, then the dashboard.
+    /// Performs an action. The active view is asked first, then the view on the screen, then
+    /// the dashboard itself.
     pub(super) fn perform(&mut self, action: Action) -> Vec<Effect> {
         let active = self.active();
         for id in [active, self.view] {
@@ -255,14 +257,14 @@ impl App {
         }
     }
 
-    /// Scrolls help; what does not scroll closes it.
+    /// Scrolls the help; an action that does not scroll closes it.
     pub(super) fn scroll_help(&mut self, scroll: u16, action: Option<Action>) {
-        let most = overlay::help_lines(&self.context, self.view, &self.lessons()).len();
+        let most = overlay::help_lines(&self.context, self.view, &self.help_texts()).len();
         let scroll = overlay::scrolled(scroll, action, self.context.size.1, most);
         self.overlay = scroll.map(|scroll| Overlay::Help { scroll });
     }
 
-    /// What no view does itself.
+    /// Performs an action that no view handles.
     fn act(&mut self, action: Action) -> Vec<Effect> {
         if let Some(view) = action.view() {
             self.view = view;
@@ -306,7 +308,7 @@ impl App {
                 context.player.next_trial();
                 if let Some(rollout) = context.player.rollout() {
                     let text =
-                        format!("trial {} begins with the next step", rollout.status().trial);
+                        format!("trial {} starts with the next step", rollout.status().trial);
                     context.show_message(text);
                 }
             }
@@ -321,7 +323,7 @@ impl App {
         Vec::new()
     }
 
-    /// The panel after, or before, the one that has the focus.
+    /// Returns the panel `by` places after the focused one.
     fn neighbour(&self, by: isize) -> ViewId {
         let placed = panels(self.body(), &self.context);
         let here = placed.iter().position(|(id, _)| *id == self.context.focus);
@@ -364,13 +366,13 @@ impl App {
             None => {
                 let title = what.title();
                 self.context
-                    .show_message(format!("{title} has no {extension} to export"));
+                    .show_message(format!("{title} has no {extension} export"));
                 Vec::new()
             }
         }
     }
 
-    /// The frame as it would be on a terminal of the present size.
+    /// Returns a frame of the current terminal size.
     #[must_use]
     pub fn frame(&self) -> Buffer {
         let (width, height) = self.context.size;
@@ -383,12 +385,12 @@ impl App {
         export::render(&self.frame(), format)
     }
 
-    /// Draws everything.
+    /// Draws a frame.
     pub fn draw(&self, frame: &mut Frame<'_>) {
         self.draw_on(frame.buffer_mut());
     }
 
-    /// Draws everything on a buffer of any size.
+    /// Draws a frame into a buffer of any size.
     pub fn draw_on(&self, buffer: &mut Buffer) {
         let (context, area) = (&self.context, buffer.area);
         buffer.set_style(area, context.look.style(Paint::Text));
@@ -408,20 +410,20 @@ impl App {
         let hints = hints.map_or(Vec::new(), |active| useful(context, self.view, active));
         header::hint_bar(context, &hints, area, buffer);
         if let Some(open) = &self.overlay {
-            overlay::draw(open, context, self.view, &self.lessons(), area, buffer);
+            overlay::draw(open, context, self.view, &self.help_texts(), area, buffer);
         }
     }
 
-    /// What there is to see: on the screen, and in the panel that has the focus.
-    fn lessons(&self) -> Vec<(&'static str, &'static str)> {
-        let mut lessons = Vec::new();
+    /// Returns title and help text of the view on the screen and of the active view.
+    fn help_texts(&self) -> Vec<(&'static str, &'static str)> {
+        let mut texts = Vec::new();
         for id in [self.view, self.active()] {
-            let lesson = self.view_of(id).map_or("", |view| view.help_text());
-            if !lessons.contains(&(id.title(), lesson)) {
-                lessons.push((id.title(), lesson));
+            let text = self.view_of(id).map_or("", |view| view.help_text());
+            if !texts.contains(&(id.title(), text)) {
+                texts.push((id.title(), text));
             }
         }
-        lessons
+        texts
     }
 
     fn draw_panel(&self, id: ViewId, area: Rect, focused: bool, buffer: &mut Buffer) {

@@ -1,21 +1,21 @@
-//! Keys that steer evolution, where it can be steered.
+//! Actions that steer the run.
 
 use crate::dashboard::chrome::overlay::Question;
 use crate::dashboard::context::Effect;
 use crate::dashboard::context::{Activity, Mode, ViewContext};
 use crate::dashboard::keys::Action;
 
-/// What became of an action.
+/// The outcome of an action.
 pub(super) enum Steered {
-    /// It does not steer evolution.
+    /// The action does not steer the run.
     Nothing,
-    /// It is done when this is answered.
+    /// The action waits for the answer to this question.
     Ask(Question),
-    /// It is done, or it was said why it cannot be.
+    /// The action was handled: run this effect, if any; otherwise a message says why not.
     Done(Option<Effect>),
 }
 
-/// Does what an action asks of the run.
+/// Handles an action that steers the run.
 pub(super) fn steer(context: &mut ViewContext, action: Action) -> Steered {
     let activity = context.activity();
     let over = matches!(activity, Activity::Finished | Activity::Stopped);
@@ -30,10 +30,12 @@ pub(super) fn steer(context: &mut ViewContext, action: Action) -> Steered {
         _ => return Steered::Nothing,
     };
     let why_not = match (context.mode, activity) {
-        (Mode::Replay, _) => Some("a replay: there is no evolution to steer"),
-        (Mode::Watch, _) => Some("another process's run: it can be watched, not steered"),
-        (_, Activity::Finished) => Some("evolution is over"),
-        (_, Activity::Stopped | Activity::Stopping) => Some("evolution was stopped"),
+        (Mode::Replay, _) => Some("this is a replay: there is no evolution to steer"),
+        (Mode::Watch, _) => {
+            Some("another process computes this run: it can be watched, not steered")
+        }
+        (_, Activity::Finished) => Some("evolution has finished"),
+        (_, Activity::Stopped | Activity::Stopping) => Some("evolution has been stopped"),
         _ => None,
     };
     if let Some(why_not) = why_not {

@@ -1,4 +1,4 @@
-//! The first and the last line of the screen: what is going on, and what keys do.
+//! The header and the hint bar: the first and the last line of the screen.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -9,10 +9,10 @@ use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Look, Paint, fitted, fitted_parts, one_line, put, width};
 use crate::dashboard::view_id::ViewId;
 
-/// Draws the first line: the run, what it is doing, and the view.
+/// Draws the header: what the run is doing, the view, the generation, the scenario.
 ///
 /// ```text
-///  ▶ RUNNING  environment-1 seed 1 · generation 12 of at most 200 · Overview      FROZEN at 11
+///  ▶ RUNNING  Overview · generation 11 · environment-1 seed 1             ✱ VIEW FROZEN at 11
 /// ```
 pub(in crate::dashboard) fn draw(
     context: &ViewContext,
@@ -58,7 +58,7 @@ pub(in crate::dashboard) fn draw(
     }
 }
 
-/// What makes the screen show something else than the present.
+/// Returns the marks that say that the screen does not show the current state of a live run.
 fn marks(context: &ViewContext) -> Vec<String> {
     let mut marks = Vec::new();
     match context.mode {
@@ -85,7 +85,7 @@ fn marks(context: &ViewContext) -> Vec<String> {
     marks
 }
 
-/// Draws the last line: a message, or what keys do.
+/// Draws the hint bar: a message, or what keys do.
 pub(in crate::dashboard) fn hint_bar(
     context: &ViewContext,
     hints: &[Action],
@@ -107,7 +107,7 @@ pub(in crate::dashboard) fn hint_bar(
     put_hints(&context.look, &named(hints), &always, line, buffer);
 }
 
-/// The last line of an area.
+/// Returns the last line of an area.
 pub(in crate::dashboard) fn last_line(area: Rect) -> Rect {
     Rect {
         y: area.bottom().saturating_sub(1),
@@ -116,14 +116,15 @@ pub(in crate::dashboard) fn last_line(area: Rect) -> Rect {
     }
 }
 
-/// Draws a message in the place of hints.
+/// Draws a message in place of the hints.
 pub(in crate::dashboard) fn put_message(look: &Look, text: &str, line: Rect, buffer: &mut Buffer) {
     let text = fitted(&one_line(text), usize::from(line.width), look.signs);
     put(buffer, line, (0, 0), &text, look.style(Paint::Notice));
 }
 
-/// Draws what keys do, as many as there is room for; at the right end the keys that are
-/// always named, help and the way out.
+/// Draws as many hints as there is room for.
+///
+/// The hints of `always`, help and the way out, stand at the right end.
 pub(in crate::dashboard) fn put_hints(
     look: &Look,
     hints: &[Hint],
@@ -146,10 +147,10 @@ pub(in crate::dashboard) fn put_hints(
     }
 }
 
-/// A key and what it does.
+/// A key and its effect.
 pub(in crate::dashboard) type Hint = (String, &'static str);
 
-/// Columns that a hint takes, two of them empty.
+/// Returns the columns that a hint takes, two of them blank.
 fn columns((key, hint): &Hint) -> u16 {
     u16::try_from(width(key) + width(hint) + 3).unwrap_or(u16::MAX)
 }

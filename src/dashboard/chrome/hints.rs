@@ -1,14 +1,14 @@
-//! Which actions a hint bar names: those that can do something as things are.
+//! The choice of hints: actions that would have an effect now.
 
 use crate::dashboard::context::{Activity, Mode, ShownGeneration, ViewContext};
 use crate::dashboard::keys::Action;
 use crate::dashboard::view_id::ViewId;
 use crate::dashboard::views::View;
 
-/// Actions that lead around the overview.
+/// Actions that move around the overview.
 const AROUND: &[Action] = &[Action::NextPanel, Action::Open];
 
-/// Actions that a hint bar names after those of the view.
+/// Actions named after those of the view.
 const COMMON: &[Action] = &[
     Action::Pause,
     Action::StepGeneration,
@@ -18,21 +18,22 @@ const COMMON: &[Action] = &[
     Action::Export,
 ];
 
-/// Actions that every hint bar ends with.
+/// Actions at the right end of every hint bar.
 pub(in crate::dashboard) const ALWAYS: &[Action] = &[Action::Help, Action::Quit];
-/// The same where there is somewhere to go back to.
-const ALWAYS_WITHIN: &[Action] = &[Action::Help, Action::Back];
+/// The same in a dashboard that was opened from a list of runs.
+const ALWAYS_WITH_BACK: &[Action] = &[Action::Help, Action::Back];
 
-/// Actions that every hint bar of the dashboard ends with.
+/// Returns the actions at the right end of the hint bar.
 pub(in crate::dashboard) fn always(context: &ViewContext) -> &'static [Action] {
-    match context.within {
-        true => ALWAYS_WITHIN,
-        false => ALWAYS,
+    if context.has_back {
+        ALWAYS_WITH_BACK
+    } else {
+        ALWAYS
     }
 }
 
-/// Actions that are named before those, most useful first; `active` is the view that keys act
-/// on.
+/// Returns the actions at the left end of the hint bar, most useful first; `active` is the view
+/// that keys act on.
 pub(in crate::dashboard) fn useful(
     context: &ViewContext,
     view: ViewId,
@@ -53,18 +54,18 @@ pub(in crate::dashboard) fn useful(
     actions
 }
 
-/// What an action does as things are, in a word or two: what is held goes on.
+/// Returns the hint of an action in the current state: a toggle names what it would switch to.
 pub(in crate::dashboard) fn word(context: &ViewContext, action: Action) -> &'static str {
     match action {
         Action::Pause if context.activity() == Activity::Paused => "resume",
         Action::Freeze if context.frozen() => "unfreeze",
-        Action::Play if context.playing => "hold",
-        Action::Halt if context.player.halted() => "go on",
+        Action::Play if context.playing => "stop playing",
+        Action::Halt if context.player.halted() => "resume",
         _ => action.hint(),
     }
 }
 
-/// Whether an action can do something, whatever the view.
+/// Returns whether `action` would have an effect now, whatever the view.
 fn can(context: &ViewContext, action: Action) -> bool {
     let rollout = context.player.rollout();
     match action {

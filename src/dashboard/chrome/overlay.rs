@@ -1,4 +1,4 @@
-//! What opens over a view: help, the menu of exports, questions.
+//! Windows that open over a view: help, the export menu, questions.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -12,24 +12,24 @@ use crate::dashboard::look::{Look, Paint, fitted, put, width, wrapped};
 use crate::dashboard::panel::panel;
 use crate::dashboard::view_id::ViewId;
 
-/// What is open over the view.
+/// A window over the view.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::dashboard) enum Overlay {
-    /// What there is to see, and all keys.
+    /// What the view shows, and all keys.
     Help {
-        /// Lines that are above the screen.
+        /// Number of lines scrolled past the top.
         scroll: u16,
     },
-    /// What can be exported.
+    /// The export menu.
     Export,
-    /// Something to be answered.
+    /// A question.
     Question(Question),
 }
 
-/// Something to be answered before it is done.
+/// A question that the user must answer before an action is performed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::dashboard) enum Question {
-    /// Leave while the run goes on?
+    /// Quit while the run is live?
     Quit,
     /// Stop the run?
     Stop,
@@ -38,8 +38,8 @@ pub(in crate::dashboard) enum Question {
 impl Question {
     fn text(self) -> &'static str {
         match self {
-            Self::Quit => "Save the run and leave? It can be resumed.",
-            Self::Stop => "Save the run and stop it? It can be resumed.",
+            Self::Quit => "Save the run and quit? It can be resumed later.",
+            Self::Stop => "Save and stop the run? It can be resumed later.",
         }
     }
 
@@ -61,21 +61,21 @@ impl Question {
     }
 }
 
-/// A line of an overlay: a key or nothing, and a text.
+/// A line of a window: keys or nothing, a text, and the paint of the text.
 pub(in crate::dashboard) type Line = (String, String, Paint);
 
-/// Draws what is open.
+/// Draws a window.
 pub(in crate::dashboard) fn draw(
     open: &Overlay,
     context: &ViewContext,
     view: ViewId,
-    lessons: &[(&str, &str)],
+    help_texts: &[(&str, &str)],
     area: Rect,
     buffer: &mut Buffer,
 ) {
     match open {
         Overlay::Help { scroll } => {
-            let lines = help_lines(context, view, lessons);
+            let lines = help_lines(context, view, help_texts);
             let titles = ("Help", view.title());
             window(&context.look, titles, &lines, *scroll, area, buffer);
         }
@@ -83,7 +83,7 @@ pub(in crate::dashboard) fn draw(
             let lines = of_scope(context, Scope::ExportMenu);
             window(
                 &context.look,
-                ("Export", "any other key: nothing"),
+                ("Export", "any other key cancels"),
                 &lines,
                 0,
                 area,
@@ -99,12 +99,12 @@ pub(in crate::dashboard) fn draw(
     }
 }
 
-/// A text without a key.
+/// Returns a line of text without keys.
 pub(in crate::dashboard) fn plain(text: &str) -> Line {
     (String::new(), text.to_owned(), Paint::Text)
 }
 
-/// An action and its keys.
+/// Returns the line of an action: its keys and its description.
 pub(in crate::dashboard) fn line(keys: &KeyMap, action: Action) -> Line {
     let keys: Vec<_> = keys.keys(action).iter().map(ToString::to_string).collect();
     let description = action.description().trim_end_matches('.');
@@ -116,7 +116,8 @@ fn of_scope(context: &ViewContext, scope: Scope) -> Vec<Line> {
     actions.map(|&action| line(&context.keys, action)).collect()
 }
 
-/// Where help of some lines has scrolled to after an action; `None` where that closes it.
+/// Returns the new scroll position of the help after an action, or `None` if the action closes
+/// it.
 pub(in crate::dashboard) fn scrolled(
     scroll: u16,
     action: Option<Action>,
@@ -136,21 +137,21 @@ pub(in crate::dashboard) fn scrolled(
     Some(scroll.saturating_add_signed(by).min(most))
 }
 
-/// Longest line of a text that is read easily.
+/// Longest line of text that reads easily, in columns.
 const READABLE: usize = 88;
 
-/// What there is to see, and all keys that do something there.
+/// Returns the lines of the help: what the view shows, and the keys that have an effect in it.
 pub(in crate::dashboard) fn help_lines(
     context: &ViewContext,
     view: ViewId,
-    lessons: &[(&str, &str)],
+    help_texts: &[(&str, &str)],
 ) -> Vec<Line> {
     let mut lines = Vec::new();
-    // Border, and a blank on either side.
+    // The border and a blank on either side.
     let columns = usize::from(context.size.0.saturating_sub(4)).min(READABLE);
-    for (title, lesson) in lessons {
+    for (title, text) in help_texts {
         lines.push((String::new(), (*title).to_owned(), Paint::Title));
-        for paragraph in lesson.split("\n\n") {
+        for paragraph in text.split("\n\n") {
             let text = paragraph.replace('\n', " ");
             lines.extend(wrapped(&text, columns, "").iter().map(|line| plain(line)));
             lines.push(plain(""));
@@ -161,8 +162,8 @@ pub(in crate::dashboard) fn help_lines(
         Scope::Everywhere | Scope::ExportMenu | Scope::Question => false,
     };
     let groups: [(&str, &dyn Fn(Scope) -> bool); 2] = [
-        ("Keys here", &here),
-        ("Keys everywhere", &|scope| scope == Scope::Everywhere),
+        ("Keys in this view", &here),
+        ("Keys in every view", &|scope| scope == Scope::Everywhere),
     ];
     for (title, counts) in groups {
         let actions = Action::ALL.iter().filter(|action| counts(action.scope()));
@@ -210,10 +211,7 @@ pub(in crate::dashboard) fn window(
     for (row, (key, text, paint)) in lines.iter().skip(skipped).enumerate() {
         let Ok(row) = u16::try_from(row) else { break };
         put(buffer, inside, (1, row), key, look.style(Paint::Key));
-        let from = match key.is_empty() {
-            true => 1,
-            false => wanted(keys + 3),
-        };
+        let from = if key.is_empty() { 1 } else { wanted(keys + 3) };
         let room = usize::from(inside.width.saturating_sub(from));
         let text = fitted(text, room, look.signs);
         put(buffer, inside, (from, row), &text, look.style(*paint));

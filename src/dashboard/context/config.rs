@@ -1,4 +1,4 @@
-//! The person's file: keys and theme.
+//! The configuration file: keys, theme and styles.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,17 +11,17 @@ use crate::dashboard::keys::{Action, Collision, Key, KeyError, KeyMap};
 use crate::dashboard::look::{Paint, StyleError, Theme};
 use crate::files::{FileError, read_text};
 
-/// Largest file that is read, in bytes.
+/// Size limit of the file, in bytes.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// Keys and themes, as the person wants them.
+/// Keys and themes as configured by the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// Which key does what.
+    /// The key map.
     pub keys: KeyMap,
-    /// The themes, those of the program with the person's changes.
+    /// The built-in themes with the user's changes.
     pub themes: Vec<Theme>,
-    /// The theme to begin with.
+    /// The name of the initial theme.
     pub theme: String,
 }
 
@@ -35,64 +35,64 @@ impl Default for Config {
     }
 }
 
-/// Why a file of keys and themes cannot be used.
+/// Why a configuration file cannot be used.
 #[derive(Debug, Error)]
 pub enum ConfigError {
-    /// It cannot be read, or is not what it should be.
+    /// The file cannot be read or parsed.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A value in it is not allowed.
+    /// A value is not allowed.
     #[error("{path}, line {line}: {problem}")]
     Value {
         /// The file.
         path: String,
-        /// Number of the line, from 1.
+        /// The line number, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The problem.
         problem: Problem,
     },
 }
 
-/// What is wrong with a value.
+/// A problem with a value.
 #[derive(Debug, Error)]
 pub enum Problem {
-    /// No such action.
+    /// The action does not exist.
     #[error("keys: found {found:?}; allowed: {}", actions())]
     Action {
-        /// The name.
+        /// The name found.
         found: String,
     },
-    /// No such key.
+    /// The key does not exist.
     #[error("keys.{action}: {source}")]
     Key {
         /// The action.
         action: String,
-        /// What is wrong.
+        /// The problem.
         source: KeyError,
     },
-    /// A key would mean two things.
+    /// A key is bound to two actions that can meet.
     #[error("keys: {0}")]
     Collision(#[from] Collision),
-    /// No such theme.
+    /// The theme does not exist.
     #[error("theme: found {found:?}; allowed: {allowed}")]
     Theme {
-        /// The name.
+        /// The name found.
         found: String,
-        /// Themes that there are.
+        /// The names of all themes.
         allowed: String,
     },
-    /// No such paint.
+    /// The paint does not exist.
     #[error("styles: found {found:?}; allowed: {}", paints())]
     Paint {
-        /// The name.
+        /// The name found.
         found: String,
     },
-    /// No such style.
+    /// The style cannot be read.
     #[error("styles.{paint}: {source}")]
     Style {
-        /// What it is for.
+        /// The paint.
         paint: String,
-        /// What is wrong.
+        /// The problem.
         source: StyleError,
     },
 }
@@ -107,7 +107,7 @@ fn paints() -> String {
     names.join(", ")
 }
 
-/// The file as it is written.
+/// The contents of the file.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct File {
@@ -125,8 +125,8 @@ enum Keys {
 }
 
 impl Config {
-    /// Where the file is if it is not said: `maxq-lab/config.toml` in `XDG_CONFIG_HOME`,
-    /// or in `.config` of the home folder.
+    /// Returns the default path: `maxq-lab/config.toml` in `XDG_CONFIG_HOME`, or in `.config`
+    /// of the home folder.
     #[must_use]
     pub fn default_path() -> Option<PathBuf> {
         let folder = |name| {
@@ -138,20 +138,21 @@ impl Config {
         Some(config.join("maxq-lab").join("config.toml"))
     }
 
-    /// Reads a file.
+    /// Reads a configuration file.
     ///
     /// # Errors
-    /// When it cannot be read, names what does not exist, or gives a key two meanings.
+    /// When the file cannot be read, has an unknown name, or binds a key to two actions that
+    /// can meet.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
         let shown = path.display().to_string();
         let text = read_text(path, MAX_BYTES)?;
         Self::read(&text, &shown)
     }
 
-    /// Reads a text; `path` names it in errors.
+    /// Reads a configuration from text; errors call it `path`.
     ///
     /// # Errors
-    /// When it names what does not exist or gives a key two meanings.
+    /// When the text has an unknown name, or binds a key to two actions that can meet.
     pub fn read(text: &str, path: &str) -> Result<Self, ConfigError> {
         let file: File = toml::from_str(text)
             .map_err(|error| FileError::new(path, error.to_string().trim_end().to_owned()))?;
@@ -167,7 +168,7 @@ fn line_of(text: &str, at: usize) -> usize {
     text.bytes().take(at).filter(|&byte| byte == b'\n').count() + 1
 }
 
-/// Where in the file, and what.
+/// A byte offset in the file, and the problem there.
 type At = (usize, Problem);
 
 impl File {
@@ -225,7 +226,7 @@ fn bind(map: &mut KeyMap, name: &Spanned<String>, keys: &Spanned<Keys>) -> Resul
     Ok(action)
 }
 
-/// Changes a style of the theme that is in use.
+/// Changes a style of the configured theme.
 fn paint(config: &mut Config, name: &Spanned<String>, style: &Spanned<String>) -> Result<(), At> {
     let paint = Paint::find(name.as_ref()).ok_or_else(|| {
         let found = name.as_ref().clone();

@@ -1,16 +1,16 @@
-//! The fold over the events of a run.
+//! The history of a run, accumulated from its events.
 
 use std::sync::Arc;
 
 use crate::evolution::GenerationRecord;
 use crate::lab::{Ending, Event};
 
-/// How far the generation under way is.
+/// The progress of the current generation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// The generation; 0 while primitive subtasks are trained.
+    /// Number of the generation; 0 while primitive subtasks are trained.
     pub generation: u64,
-    /// Individuals that have lived.
+    /// Individuals that have been evaluated.
     pub lived: usize,
     /// Individuals in the population.
     pub population: usize,
@@ -18,9 +18,9 @@ pub struct Progress {
     pub control_steps: u64,
 }
 
-/// All that the events of a run have told so far.
+/// Everything known about a run from its events so far.
 ///
-/// Generations are shared, so that a model is cheaply kept as it was.
+/// Generations are shared, so that a clone is cheap; a frozen display keeps one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunHistory {
     generations: Vec<Arc<GenerationRecord>>,
@@ -31,7 +31,7 @@ pub struct RunHistory {
 }
 
 impl RunHistory {
-    /// Takes in a fact.
+    /// Applies an event.
     pub fn apply(&mut self, event: Event) {
         match event {
             Event::Started { .. } => {}
@@ -46,7 +46,7 @@ impl RunHistory {
                 population,
                 control_steps,
             } => {
-                // A run that goes on is not over, whatever its past said.
+                // Progress means that the run was resumed, even if it had ended before.
                 self.ending = None;
                 self.progress = Some(Progress {
                     generation,
@@ -61,7 +61,7 @@ impl RunHistory {
         }
     }
 
-    /// Adds a generation in its place; one told again replaces the one before.
+    /// Adds a generation in its place; a repeated one replaces the former record.
     fn add(&mut self, record: GenerationRecord) {
         let number = record.generation;
         let record = Arc::new(record);
@@ -76,44 +76,45 @@ impl RunHistory {
             .binary_search_by_key(&number, |record| record.generation)
     }
 
-    /// The generations so far, in order.
+    /// Returns the generations so far, in order.
     #[must_use]
     pub fn generations(&self) -> &[Arc<GenerationRecord>] {
         &self.generations
     }
 
-    /// A generation by its number.
+    /// Returns the generation with this number.
     #[must_use]
     pub fn generation(&self, number: u64) -> Option<&Arc<GenerationRecord>> {
         self.search(number).ok().map(|at| &self.generations[at])
     }
 
-    /// The last generation that has lived.
+    /// Returns the latest complete generation.
     #[must_use]
     pub fn latest(&self) -> Option<&Arc<GenerationRecord>> {
         self.generations.last()
     }
 
-    /// How far the generation under way is; `None` before the first word of it, and
-    /// after the end.
+    /// Returns the progress of the current generation.
+    ///
+    /// `None` before the first progress event, and after the end of the run.
     #[must_use]
     pub fn progress(&self) -> Option<Progress> {
         self.progress
     }
 
-    /// Whether evolution waits.
+    /// Returns whether evolution is paused.
     #[must_use]
     pub fn paused(&self) -> bool {
         self.paused
     }
 
-    /// The generation after which the last checkpoint was taken.
+    /// Returns the generation of the last checkpoint.
     #[must_use]
     pub fn checkpoint(&self) -> Option<u64> {
         self.checkpoint
     }
 
-    /// Why evolution is over; `None` while it is not.
+    /// Returns why evolution has ended, or `None` if it has not.
     #[must_use]
     pub fn ending(&self) -> Option<Ending> {
         self.ending

@@ -1,4 +1,4 @@
-//! What reaches the dashboard, and what it wants done.
+//! The inputs of the dashboard, and the effects that it asks its driver to run.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,70 +8,69 @@ use crate::dashboard::keys::Key;
 use crate::evolution::EvolutionState;
 use crate::lab::Event;
 
-/// Something that happened.
+/// An input of the dashboard.
 #[derive(Clone, Debug)]
 pub enum Input {
     /// A key was pressed.
     Key(Key),
-    /// Something was done with the mouse.
+    /// The mouse was used.
     Mouse(Mouse),
-    /// The terminal has so many columns and rows.
+    /// The terminal has this many columns and rows.
     Resize(u16, u16),
-    /// The run has a fact to tell.
+    /// The run has emitted an event.
     Event(Box<Event>),
-    /// The run will tell nothing more: it is over, was stopped, or died.
+    /// The run will emit no more events: it has finished, was stopped, or crashed.
     Closed,
-    /// So much time went by since the last tick.
+    /// This much time has passed since the last tick.
     Tick(Duration),
-    /// The population after a generation, or why it cannot be had.
+    /// The population after a generation, or why it could not be loaded.
     Population {
-        /// The generation.
+        /// Number of the generation.
         generation: u64,
-        /// Its individuals with all that they have learned.
+        /// The individuals with everything that they have learned, or the error message.
         state: Result<Arc<EvolutionState>, String>,
     },
-    /// Whoever drives the dashboard has something to say: an export was written, a file
-    /// could not be read.
+    /// The driver has a message for the user: an export was written, a file could not be read.
     Message(String),
 }
 
-/// Something to be done by whoever drives the dashboard.
+/// An effect that the driver of the dashboard must run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Make evolution wait.
+    /// Pause evolution.
     Pause,
-    /// Let evolution go on.
+    /// Resume evolution.
     Resume,
-    /// Let evolution go on to the end of a generation.
+    /// Evolve to the end of a generation, then pause.
     Step,
-    /// Save the latest state now.
+    /// Save a checkpoint now.
     Checkpoint,
-    /// Save and end the run, and stay.
+    /// Save and stop the run; the dashboard stays open.
     Stop,
-    /// Save and end the run if there is one, and leave.
+    /// Save and stop the run if it is live, and quit.
     Quit,
-    /// Go back to where the run was opened from, if it was opened from somewhere.
+    /// Return to the list of runs, if the dashboard was opened from one.
     Back,
-    /// Leave, and let the run go on without a terminal.
+    /// Quit, and let the run continue without a terminal.
     Detach,
-    /// Put the program into the background of its shell.
+    /// Suspend the program.
     Suspend,
-    /// Forget what is on the terminal and draw everything again.
+    /// Redraw the whole screen, whatever the terminal shows.
     Redraw,
-    /// Fetch the population after a generation; the answer is [`Input::Population`].
+    /// Load the population after a generation; the reply is [`Input::Population`].
     Load {
-        /// The generation.
+        /// Number of the generation.
         generation: u64,
     },
-    /// Write a file for the person.
+    /// Write a file.
     Export(Export),
 }
 
-/// A file for the person.
+/// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Export {
-    /// Its name without a folder.
+    /// The name without a folder.
     pub name: String,
-    /// What is in it.
+    /// The contents.
     pub contents: String,
 }

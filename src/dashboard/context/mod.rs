@@ -1,4 +1,4 @@
-//! What every view may read: the run, and what the person has chosen to see of it.
+//! Everything that a view may read: the run, and what the user has chosen to see of it.
 
 mod config;
 mod history;

@@ -1,36 +1,36 @@
-//! What the mouse does, where it is turned on.
+//! Mouse gestures, for terminals where the mouse is enabled.
 //!
-//! A click on a panel of the overview gives it the focus, a second one opens it; a click on
-//! a line of a list selects it, one on the line that is selected opens it. The wheel is that of
-//! the list under the pointer.
+//! A click on a panel of the overview focuses it, a second click opens it. A click on a line of
+//! a list selects it, a click on the selected line opens it. The wheel scrolls the list under
+//! the pointer.
 
 use ratatui::crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::{Position, Rect};
 
 use crate::dashboard::keys::Action;
 
-/// Something that was done with the mouse, and where.
+/// A gesture and its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mouse {
     /// Column and row of the terminal, from 0.
     pub at: Position,
-    /// What was done.
+    /// The gesture.
     pub what: Gesture,
 }
 
-/// What is done with a mouse.
+/// A mouse gesture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gesture {
     /// The left button was pressed.
     Click,
-    /// The wheel was turned towards earlier lines.
+    /// The wheel was turned up.
     WheelUp,
-    /// The wheel was turned towards later lines.
+    /// The wheel was turned down.
     WheelDown,
 }
 
 impl Gesture {
-    /// What the wheel asks for.
+    /// Returns the action of the wheel, or `None` for a click.
     pub(in crate::dashboard) fn scrolls(self) -> Option<Action> {
         match self {
             Self::Click => None,
@@ -41,7 +41,8 @@ impl Gesture {
 }
 
 impl Mouse {
-    /// What a terminal told of the mouse; `None` where that is of no account.
+    /// Returns the gesture of a terminal event, or `None` for events that the dashboard
+    /// ignores.
     #[must_use]
     pub fn of(event: MouseEvent) -> Option<Self> {
         let what = match event.kind {
@@ -55,20 +56,21 @@ impl Mouse {
     }
 }
 
-/// What a click on a view has done.
+/// The effect of a click on a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::dashboard) enum Clicked {
-    /// There was nothing to select.
+    /// The click met nothing that can be selected.
     Nothing,
-    /// It has selected something.
+    /// The click has selected something else.
     Selected,
-    /// It met what was selected before.
+    /// The click met what was already selected.
     Again,
 }
 
 impl Clicked {
-    /// A click on one of several things, or on none, when `before` was selected; `select`
-    /// selects another.
+    /// Returns the effect of a click on `thing` while `before` was selected.
+    ///
+    /// `select` is called if the selection changes.
     pub(in crate::dashboard) fn on<T: PartialEq>(
         thing: Option<T>,
         before: T,
@@ -85,7 +87,7 @@ impl Clicked {
     }
 }
 
-/// Which line of a list is at a place: the list fills an area below a head of so many lines.
+/// Returns the line of a list at a position; the list fills `area` below `head` lines.
 pub(in crate::dashboard) fn line_at(at: Position, area: Rect, head: u16) -> Option<usize> {
     let below = at.y.checked_sub(area.y.saturating_add(head))?;
     area.contains(at).then_some(usize::from(below))

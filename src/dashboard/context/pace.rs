@@ -1,13 +1,12 @@
-//! How fast a run goes, and when it will be over at the latest.
+//! The speed of a run, and an upper bound of the time left.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Time over which the rate of control steps is taken.
+/// Time window over which the rate of control steps is averaged.
 const WINDOW: Duration = Duration::from_secs(3);
 
-/// How fast a run goes, measured in the time that ticks tell; time in which evolution
-/// waits does not count.
+/// The speed of a run, measured in the time of ticks while evolution is not paused.
 #[derive(Clone, Debug, Default)]
 pub struct Pace {
     running: Duration,
@@ -16,12 +15,12 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Evolution went on for a while.
+    /// Adds time in which evolution was running.
     pub(in crate::dashboard) fn tick(&mut self, elapsed: Duration) {
         self.running += elapsed;
     }
 
-    /// So many control steps have been computed.
+    /// Records the number of control steps computed so far.
     pub(in crate::dashboard) fn steps(&mut self, steps: u64) {
         let now = self.running;
         match self.steps.back_mut() {
@@ -33,17 +32,17 @@ impl Pace {
         }
     }
 
-    /// A generation is over.
+    /// Records the end of a generation.
     pub(in crate::dashboard) fn generation(&mut self, number: u64) {
         let now = (self.running, number);
         self.generations = Some(match self.generations {
-            // Generations told at once are the past of a run that was resumed.
+            // Generations that arrive at once are the past of a resumed run.
             Some([first, _]) if first.0 < now.0 => [first, now],
             _ => [now, now],
         });
     }
 
-    /// Control steps a second; `None` before there is anything to measure.
+    /// Returns control steps per second, or `None` before there is anything to measure.
     #[must_use]
     pub fn steps_per_second(&self) -> Option<f64> {
         let ((from, first), (to, last)) = (self.steps.front()?, self.steps.back()?);
@@ -51,7 +50,7 @@ impl Pace {
         (seconds > 0.0).then(|| last.saturating_sub(*first) as f64 / seconds)
     }
 
-    /// Time until this generation is over, at the pace so far.
+    /// Returns the time until the end of a generation, at the pace so far.
     #[must_use]
     pub fn time_to(&self, generation: u64) -> Option<Duration> {
         let [(from, first), (to, last)] = self.generations?;

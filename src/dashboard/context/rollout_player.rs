@@ -1,4 +1,4 @@
-//! The player: a rollout of the individual that is looked at.
+//! The rollout player: a rollout of the inspected individual, at a chosen speed.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -10,34 +10,33 @@ use crate::hierarchy::Tree;
 use crate::lab::AnyExperiment;
 use crate::lab::inspection::{InspectedIndividual, PolicyMap, Rollout, Start, StepTrace};
 
-/// Speeds of a rollout: times real time.
+/// Speeds of a rollout, as multiples of real time.
 pub const SPEEDS: [u32; 10] = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
-/// A speed at which a robot is seen to move and a trial takes a second or two.
+/// Index of the initial speed, at which motion can be seen and a trial takes a second or two.
 const FIRST_SPEED: usize = 3;
 
-/// What a time step lasts in a world whose time is not real.
+/// Duration of a time step in a world without real time, in seconds.
 const NOMINAL_STEP_S: f64 = 0.2;
 
-/// Up to this speed the end of a trial is held for a moment.
-const UNHURRIED: u32 = 50;
+/// Up to this speed every time step is drawn, and the end of a trial is held for a moment.
+const SLOW: u32 = 50;
 const HOLD: Duration = Duration::from_millis(700);
 
-/// Time after which a rollout gives way to the new best of evolution, in the middle of
-/// a trial too.
+/// Time after which a rollout gives way to a new best individual, even within a trial.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Most time steps between two frames.
 const MOST_STEPS: u32 = 5_000;
 
-/// Time steps that are recorded.
+/// Number of recorded time steps.
 const RECORDED: usize = 500;
 
-/// Whose rollout it is.
+/// The individual of a rollout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subject {
-    /// The generation that it was taken from.
+    /// The generation that the individual was taken from.
     pub generation: u64,
-    /// The individual.
+    /// The id of the individual.
     pub id: u64,
 }
 
@@ -47,31 +46,33 @@ impl fmt::Display for Subject {
     }
 }
 
-/// A step that was recorded.
+/// A recorded time step.
 struct Recorded {
     trace: StepTrace,
-    /// What the agent would do in each cell after it; `None` where the world has no cells.
+    /// The policy in each cell after the step; `None` in a world without cells.
     cells: Option<PolicyMap>,
 }
 
-/// A rollout of the individual that is looked at, on a copy with a random stream of its
-/// own: watching never touches evolution.
+/// A rollout of the inspected individual.
+///
+/// The player works on a copy with its own random stream, so that watching never affects
+/// evolution.
 pub struct RolloutPlayer {
     experiment: &'static dyn AnyExperiment,
     population: Option<Arc<EvolutionState>>,
-    /// The generation that was asked for last, and why it is not there.
-    asked: Option<u64>,
-    refused: Option<(u64, String)>,
+    /// The generation that is being loaded, and the last generation that could not be loaded.
+    requested: Option<u64>,
+    failed: Option<(u64, String)>,
     subject: Option<Subject>,
     rollout: Option<Box<dyn Rollout>>,
-    /// The latest first.
+    /// Recorded steps, the latest first.
     recorded: VecDeque<Recorded>,
-    number: u64,
-    /// Where trials begin, if the person has said so.
+    restarts: u64,
+    /// The start state of trials, if the user has set one.
     start: Option<Start>,
     halted: bool,
     speed: usize,
-    owed: f64,
+    steps_due: f64,
     shown_for: Duration,
     held_for: Duration,
 }
@@ -81,73 +82,79 @@ impl RolloutPlayer {
         Self {
             experiment,
             population: None,
-            asked: None,
-            refused: None,
+            requested: None,
+            failed: None,
             subject: None,
             rollout: None,
             recorded: VecDeque::new(),
-            number: 0,
+            restarts: 0,
             start: None,
             halted: false,
             speed: FIRST_SPEED,
-            owed: 0.0,
+            steps_due: 0.0,
             shown_for: Duration::ZERO,
             held_for: Duration::ZERO,
         }
     }
 
-    /// The population on the player, with everything that it has learned.
+    /// Returns the loaded population, with everything that it has learned.
     #[must_use]
     pub fn population(&self) -> Option<&Arc<EvolutionState>> {
         self.population.as_ref()
     }
 
-    /// Whose rollout it is.
+    /// The individual of a rollout.
     #[must_use]
     pub fn subject(&self) -> Option<Subject> {
         self.subject
     }
 
-    /// The individual on the player, with what it had learned when it came there.
+    /// Returns the individual, with what it had learned before the rollout.
     #[must_use]
     pub fn individual(&self) -> Option<InspectedIndividual<'_>> {
         InspectedIndividual::with_id(self.population.as_deref()?, self.subject?.id)
     }
 
-    /// The hierarchy of the individual on the player.
+    /// Returns the hierarchy of the individual.
     #[must_use]
     pub fn tree(&self) -> Option<&Tree> {
         Some(self.individual()?.individual.hierarchy.tree())
     }
 
-    /// The rollout.
+    /// Returns the rollout.
     #[must_use]
     pub fn rollout(&self) -> Option<&dyn Rollout> {
         self.rollout.as_deref()
     }
 
-    /// A time step with everything that decided it, the last but some: of a rollout that
-    /// runs, one step a frame is recorded.
+    /// Returns a recorded time step with everything that decided it, `back` steps before the
+    /// latest.
+    ///
+    /// A rollout above real-time drawing speed records one step per frame.
     #[must_use]
     pub fn trace(&self, back: usize) -> Option<&StepTrace> {
         Some(&self.recorded.get(back)?.trace)
     }
 
-    /// What the agent would do in each cell, with what it had learned by the end of that step,
-    /// all but its place being as it was then; `None` where the world has no cells.
+    /// Returns the policy in each cell after the step `back` steps before the latest,
+    /// everything but the agent's position as it was then.
+    ///
+    /// `None` in a world without cells.
     #[must_use]
     pub fn cells(&self, back: usize) -> Option<&PolicyMap> {
         self.recorded.get(back)?.cells.as_ref()
     }
 
-    /// How many steps are recorded.
+    /// Returns the number of recorded steps.
     #[must_use]
     pub fn recorded_steps(&self) -> usize {
         self.recorded.len()
     }
 
-    /// Where the agent has been in the trial of a recorded step, up to that step, the latest
-    /// place last: all places of the present trial, of an earlier one those that are recorded.
+    /// Returns the positions of the agent in the trial of a recorded step, up to that step, the
+    /// latest last.
+    ///
+    /// The current trial has all its positions, an earlier one those that were recorded.
     #[must_use]
     pub fn trail(&self, back: usize) -> Vec<[f64; 2]> {
         let (Some(rollout), Some(trace)) = (&self.rollout, self.trace(back)) else {
@@ -168,52 +175,53 @@ impl RolloutPlayer {
         trail
     }
 
-    /// Why there is nothing on the player.
+    /// Returns why the population could not be loaded.
     #[must_use]
     pub fn load_error(&self) -> Option<&str> {
-        self.refused.as_ref().map(|(_, why)| why.as_str())
+        self.failed.as_ref().map(|(_, why)| why.as_str())
     }
 
-    /// Whether the rollout is halted.
+    /// Returns whether the rollout is halted.
     #[must_use]
     pub fn halted(&self) -> bool {
         self.halted
     }
 
-    /// Halts the rollout, or lets it go on.
+    /// Halts or resumes the rollout.
     pub fn toggle_halt(&mut self) {
         self.halted = !self.halted;
-        self.owed = 0.0;
+        self.steps_due = 0.0;
     }
 
     /// Halts the rollout.
     pub fn halt(&mut self) {
         self.halted = true;
-        self.owed = 0.0;
+        self.steps_due = 0.0;
     }
 
-    /// Speed of the rollout: times real time.
+    /// Returns the speed of the rollout, as a multiple of real time.
     #[must_use]
     pub fn speed(&self) -> u32 {
         SPEEDS[self.speed.min(SPEEDS.len() - 1)]
     }
 
-    /// Whether it can be made faster, or slower.
+    /// Returns whether the speed can be raised, or lowered.
     #[must_use]
     pub fn can_change_speed(&self, faster: bool) -> bool {
         let end = if faster { SPEEDS.len() - 1 } else { 0 };
         self.speed != end
     }
 
-    /// Makes the rollout faster, or slower.
+    /// Raises or lowers the speed.
     pub fn change_speed(&mut self, faster: bool) {
-        self.speed = match faster {
-            true => (self.speed + 1).min(SPEEDS.len() - 1),
-            false => self.speed.saturating_sub(1),
+        self.speed = if faster {
+            (self.speed + 1).min(SPEEDS.len() - 1)
+        } else {
+            self.speed.saturating_sub(1)
         };
     }
 
-    /// Halts the rollout and takes one time step, with everything that decided it.
+    /// Halts the rollout and takes one recorded time step.
     pub fn step(&mut self) {
         self.halt();
         self.record();
@@ -230,47 +238,48 @@ impl RolloutPlayer {
         }
     }
 
-    /// Lets all trials of all rollouts begin there.
-    pub(in crate::dashboard) fn begin_at(&mut self, start: Start) {
+    /// Lets all trials of all rollouts start at `start`.
+    pub(in crate::dashboard) fn start_at(&mut self, start: Start) {
         self.start = Some(start);
     }
 
-    /// Begins another rollout of the same individual: another start, other chances, and
-    /// nothing kept of what the last one learned.
+    /// Starts a new rollout of the same individual: with another random stream, and without
+    /// what it learned in the last one.
     pub fn restart(&mut self) {
-        self.number += 1;
+        self.restarts += 1;
         self.begin();
     }
 
-    /// Gives the present trial up and begins the next.
+    /// Abandons the current trial and starts the next.
     pub fn next_trial(&mut self) {
         if let Some(rollout) = &mut self.rollout {
             rollout.begin_trial();
         }
     }
 
-    /// Takes in a population, or why there is none.
+    /// Receives a loaded population, or why it could not be loaded.
     pub(in crate::dashboard) fn receive(
         &mut self,
         generation: u64,
         state: Result<Arc<EvolutionState>, String>,
     ) {
-        if self.asked == Some(generation) {
-            self.asked = None;
+        if self.requested == Some(generation) {
+            self.requested = None;
         }
         match state {
             Ok(state) => {
-                self.refused = None;
+                self.failed = None;
                 self.population = Some(state);
             }
-            Err(why) => self.refused = Some((generation, why)),
+            Err(why) => self.failed = Some((generation, why)),
         }
     }
 
-    /// Puts the individual on the player that the person looks at. `by_choice` tells
-    /// whether the person chose it, or evolution went on by itself: then the trial on the
-    /// player may end. Returns the generation to be loaded for it.
-    pub(in crate::dashboard) fn want(
+    /// Switches to the inspected individual; returns the generation that must be loaded for it.
+    ///
+    /// `by_choice` means that the user chose the individual. Otherwise evolution did, and the
+    /// current trial may end first.
+    pub(in crate::dashboard) fn switch_to(
         &mut self,
         wanted: Option<Subject>,
         by_choice: bool,
@@ -285,20 +294,20 @@ impl RolloutPlayer {
         }
         let loaded = self.population.as_ref().map(|state| state.generation);
         if loaded != Some(wanted.generation) {
-            let refused = self.refused.as_ref().map(|(generation, _)| *generation);
-            if refused == Some(wanted.generation) {
+            let failed = self.failed.as_ref().map(|(generation, _)| *generation);
+            if failed == Some(wanted.generation) {
                 self.subject = None;
                 self.rollout = None;
                 return None;
             }
-            if self.asked == Some(wanted.generation) {
+            if self.requested == Some(wanted.generation) {
                 return None;
             }
-            self.asked = Some(wanted.generation);
-            return self.asked;
+            self.requested = Some(wanted.generation);
+            return self.requested;
         }
         self.subject = Some(wanted);
-        // An individual that lives on goes on with what it is doing.
+        // An individual that survives into the next generation continues its rollout.
         if by_choice || here.is_none_or(|here| here.id != wanted.id) {
             self.begin();
         } else {
@@ -316,25 +325,25 @@ impl RolloutPlayer {
     }
 
     fn begin(&mut self) {
-        let (experiment, number, start) = (self.experiment, self.number, self.start);
+        let (experiment, number, start) = (self.experiment, self.restarts, self.start);
         let rollout = self
             .individual()
             .map(|individual| experiment.rollout(individual, number, start));
         self.rollout = rollout;
         self.recorded.clear();
-        self.owed = 0.0;
+        self.steps_due = 0.0;
         self.shown_for = Duration::ZERO;
         self.held_for = Duration::ZERO;
     }
 
-    /// Lets time go by. Whether anything has changed.
+    /// Lets time pass; returns whether anything has changed.
     pub(in crate::dashboard) fn tick(&mut self, elapsed: Duration) -> bool {
         let speed = self.speed();
         let (false, Some(rollout)) = (self.halted, &self.rollout) else {
             return false;
         };
         self.shown_for += elapsed;
-        if rollout.status().ended.is_some() && speed <= UNHURRIED {
+        if rollout.status().ended.is_some() && speed <= SLOW {
             self.held_for += elapsed;
             if self.held_for < HOLD {
                 return false;
@@ -346,13 +355,13 @@ impl RolloutPlayer {
             .scenery()
             .time_step_s
             .unwrap_or(NOMINAL_STEP_S);
-        self.owed += elapsed.as_secs_f64() * f64::from(speed) / step_s;
-        let steps = (self.owed as u32).min(MOST_STEPS);
+        self.steps_due += elapsed.as_secs_f64() * f64::from(speed) / step_s;
+        let steps = (self.steps_due as u32).min(MOST_STEPS);
         if steps == 0 {
             return false;
         }
-        self.owed = self.owed.fract();
-        if speed > UNHURRIED {
+        self.steps_due = self.steps_due.fract();
+        if speed > SLOW {
             if let Some(rollout) = &mut self.rollout {
                 rollout.advance(steps - 1);
             }

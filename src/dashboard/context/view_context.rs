@@ -1,4 +1,4 @@
-//! What the person has chosen to look at, over what there is to see.
+//! The view context: the run, and what the user has chosen to see of it.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -17,108 +17,108 @@ use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 use crate::worlds::scene::Scenery;
 
-/// Generations a second while time runs through them.
+/// Generations per second while the generations are played.
 const PLAYED_PER_SECOND: u32 = 4;
 
-/// How long a message is new.
+/// Time for which a message is shown.
 const MESSAGE_TIME: Duration = Duration::from_secs(5);
-/// Messages that are kept.
+/// Number of messages kept in the log.
 const LOG: usize = 100;
 
-/// How the dashboard stands to its run.
+/// The relation between the dashboard and its run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// The run is this process's.
+    /// This process computes the run.
     Live,
-    /// The run is another process's; it is followed and cannot be steered.
+    /// Another process computes the run; the dashboard follows it and cannot steer it.
     Watch,
-    /// The run is not going on.
+    /// No process computes the run.
     Replay,
 }
 
-/// The generation that is shown.
+/// The generation that the user has chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShownGeneration {
-    /// The latest.
+    /// The latest generation.
     Latest,
-    /// The one with this number.
+    /// The generation with this number.
     At(u64),
 }
 
-/// The individual that is shown.
+/// The individual that the user has chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chosen {
-    /// The best of the generation shown.
+    /// The best individual of the shown generation.
     Best,
-    /// The one with this id.
+    /// The individual with this id.
     Id(u64),
 }
 
-/// What evolution is doing, as far as the events tell.
+/// The activity of the run, as known from its events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// The primitive subtasks are trained.
+    /// Primitive subtasks are being trained.
     Training,
-    /// Generations live.
+    /// Generations are being evaluated.
     Running,
-    /// The generation under way lives on, then evolution waits.
+    /// The current generation is being completed, then evolution pauses.
     Stepping,
-    /// It waits.
+    /// Evolution is paused.
     Paused,
-    /// It was told to stop and saves its state.
+    /// Evolution has been told to stop and is saving its state.
     Stopping,
-    /// It was stopped, or died, before it was over.
+    /// Evolution was interrupted before its end.
     Stopped,
-    /// It is over.
+    /// Evolution has finished.
     Finished,
 }
 
-/// What every view reads: the run, and what the person has chosen to see of it.
+/// What every view reads: the run, and what the user has chosen to see of it.
 pub struct ViewContext {
     /// The scenario and its world.
     pub experiment: &'static dyn AnyExperiment,
-    /// The run folder, for people.
+    /// The run folder, as shown to the user.
     pub folder: String,
-    /// The settings in which the scenario departs from the embedded one of its name.
+    /// The settings in which the scenario differs from the built-in scenario of the same name.
     pub changed: Vec<String>,
-    /// The rollout of the individual that is looked at.
+    /// The rollout of the inspected individual.
     pub player: RolloutPlayer,
-    /// How the dashboard stands to its run.
+    /// The relation between the dashboard and its run.
     pub mode: Mode,
     /// Themes and signs.
     pub look: Look,
-    /// Which key does what.
+    /// The key map.
     pub keys: KeyMap,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
-    /// The individual that is shown.
+    /// The individual that the user has chosen.
     pub chosen: Chosen,
-    /// The node of the hierarchy that is selected, if the hierarchy has as many.
+    /// Index of the selected node of the hierarchy; see [`ViewContext::node_in`].
     pub node: usize,
-    /// The individual that others are compared with, if the person has named one.
+    /// Id of the individual that others are compared with, if the user has marked one.
     pub marked: Option<u64>,
-    /// The panel of the overview that keys act on.
+    /// The focused panel of the overview.
     pub focus: ViewId,
-    /// Time that has gone by, the sum of all ticks.
+    /// Time since the start of the dashboard: the sum of all ticks.
     pub clock: Duration,
-    /// How fast the run goes.
+    /// The speed of the run.
     pub pace: Pace,
-    /// Whether time runs through the generations.
+    /// Whether the generations are being played.
     pub playing: bool,
-    /// Whether the dashboard was opened from somewhere that going back leads to.
-    pub within: bool,
+    /// Whether the dashboard was opened from a list of runs to which the user can return.
+    pub has_back: bool,
     pub(in crate::dashboard) stepping: bool,
     pub(in crate::dashboard) stopping: bool,
     pub(in crate::dashboard) closed: bool,
     time: ShownGeneration,
     live: RunHistory,
-    held: Option<RunHistory>,
-    played: Duration,
+    frozen_history: Option<RunHistory>,
+    play_time: Duration,
     log: VecDeque<(String, Duration)>,
 }
 
 impl ViewContext {
-    /// A context at the beginning of a run.
+    /// Creates the context of a run without events.
     #[must_use]
     pub fn new(
         experiment: &'static dyn AnyExperiment,
@@ -144,67 +144,68 @@ impl ViewContext {
             clock: Duration::ZERO,
             pace: Pace::default(),
             playing: false,
-            within: false,
+            has_back: false,
             stepping: false,
             stopping: false,
             closed: mode == Mode::Replay,
             time: ShownGeneration::Latest,
             live: RunHistory::default(),
-            held: None,
-            played: Duration::ZERO,
+            frozen_history: None,
+            play_time: Duration::ZERO,
             log: VecDeque::new(),
         }
     }
 
-    /// The scenario.
+    /// Returns the scenario.
     #[must_use]
     pub fn scenario(&self) -> &'static Scenario {
         self.experiment.scenario()
     }
 
-    /// The world's subtasks.
+    /// Returns the world's catalogue of subtasks.
     #[must_use]
     pub fn catalogue(&self) -> &'static Catalogue {
         self.experiment.catalogue()
     }
 
-    /// What there is to see of the world.
+    /// Returns the scenery of the world.
     #[must_use]
     pub fn scenery(&self) -> &'static Scenery {
         self.experiment.scenery()
     }
 
-    /// The run as it is, whatever is shown.
+    /// Returns the history up to now, whether or not the display is frozen.
     #[must_use]
     pub fn live_history(&self) -> &RunHistory {
         &self.live
     }
 
-    /// The run as it is shown: as it is, or as it was when the view was frozen.
+    /// Returns the history to be shown: up to now, or up to the moment when the display was
+    /// frozen.
     #[must_use]
     pub fn history(&self) -> &RunHistory {
-        self.held.as_ref().unwrap_or(&self.live)
+        self.frozen_history.as_ref().unwrap_or(&self.live)
     }
 
     pub(in crate::dashboard) fn live_history_mut(&mut self) -> &mut RunHistory {
         &mut self.live
     }
 
-    /// Whether the view is frozen.
+    /// Returns whether the display is frozen.
     #[must_use]
     pub fn frozen(&self) -> bool {
-        self.held.is_some()
+        self.frozen_history.is_some()
     }
 
-    /// Freezes the view or lets it go.
+    /// Freezes or unfreezes the display.
     pub fn toggle_freeze(&mut self) {
-        self.held = match self.held {
+        self.frozen_history = match self.frozen_history {
             Some(_) => None,
             None => Some(self.live.clone()),
         };
     }
 
-    /// What evolution is doing.
+    /// Returns the activity of the run.
     #[must_use]
     pub fn activity(&self) -> Activity {
         let live = &self.live;
@@ -220,7 +221,7 @@ impl ViewContext {
         }
     }
 
-    /// Sign, word and paint of what evolution is doing.
+    /// Returns sign, word and paint of the activity.
     pub(in crate::dashboard) fn activity_mark(&self) -> (&'static str, &'static str, Paint) {
         let signs = self.look.signs;
         match self.activity() {
@@ -237,31 +238,32 @@ impl ViewContext {
         }
     }
 
-    /// The generation that the person travelled to.
+    /// Returns the generation that the user has chosen.
     #[must_use]
     pub fn time(&self) -> ShownGeneration {
         self.time
     }
 
-    /// The generation that is shown; `None` before the first has lived.
+    /// Returns the shown generation, or `None` before the first is complete.
     #[must_use]
     pub fn shown(&self) -> Option<&Arc<GenerationRecord>> {
-        let model = self.history();
+        let history = self.history();
         match self.time {
-            ShownGeneration::Latest => model.latest(),
-            ShownGeneration::At(number) => model.generation(number).or_else(|| model.latest()),
+            ShownGeneration::Latest => history.latest(),
+            ShownGeneration::At(number) => history.generation(number).or_else(|| history.latest()),
         }
     }
 
-    /// Whether what is shown is not the latest generation there is.
+    /// Returns whether an earlier generation than the latest is shown.
     #[must_use]
     pub fn is_in_the_past(&self) -> bool {
         let number = |record: Option<&Arc<GenerationRecord>>| record.map(|r| r.generation);
         number(self.shown()) != number(self.live.latest())
     }
 
-    /// Travels to the generation with this number, or the nearest that there is; the
-    /// last one is followed as evolution goes on.
+    /// Shows the generation with this number, or the nearest one.
+    ///
+    /// The last generation means that the latest is followed as evolution continues.
     pub fn travel_to(&mut self, number: u64) {
         let generations = self.history().generations();
         let (Some(first), Some(last)) = (generations.first(), generations.last()) else {
@@ -274,7 +276,7 @@ impl ViewContext {
         };
     }
 
-    /// Travels some generations on, or back.
+    /// Moves some generations forward, or back.
     pub fn travel_by(&mut self, by: isize) {
         let generations = self.history().generations();
         let shown = self.shown().map(|record| record.generation);
@@ -288,16 +290,17 @@ impl ViewContext {
         }
     }
 
-    /// Starts or ends running through the generations; from the latest it begins anew.
+    /// Starts or stops playing through the generations; from the latest it starts over with the
+    /// first.
     pub fn toggle_play(&mut self) {
         self.playing = !self.playing;
-        self.played = Duration::ZERO;
+        self.play_time = Duration::ZERO;
         if self.playing && self.time == ShownGeneration::Latest {
             self.travel_to(0);
         }
     }
 
-    /// Lets time go by. Whether anything but the clock has changed.
+    /// Lets time pass; returns whether anything but the clock has changed.
     pub(in crate::dashboard) fn tick(&mut self, elapsed: Duration) -> bool {
         self.clock += elapsed;
         if matches!(self.activity(), Activity::Running | Activity::Stepping) {
@@ -306,19 +309,19 @@ impl ViewContext {
         if !self.playing {
             return false;
         }
-        self.played += elapsed;
+        self.play_time += elapsed;
         let period = Duration::from_secs(1) / PLAYED_PER_SECOND;
         let before = self.time;
-        while self.played >= period && self.playing {
-            self.played -= period;
+        while self.play_time >= period && self.playing {
+            self.play_time -= period;
             self.travel_by(1);
             self.playing = self.time != ShownGeneration::Latest;
         }
         before != self.time
     }
 
-    /// The selected individual of the generation shown; the best where the chosen one
-    /// did not live in it.
+    /// Returns the selected individual of the shown generation; the best if the chosen one is
+    /// not in it.
     #[must_use]
     pub fn selected(&self) -> Option<&RankedRecord> {
         let individuals = &self.shown()?.individuals;
@@ -329,18 +332,20 @@ impl ViewContext {
         chosen.or_else(|| individuals.first())
     }
 
-    /// Keeps the selected individual to compare others with.
+    /// Marks the selected individual as the one to compare others with.
     pub fn mark(&mut self) {
         if let Some(id) = self.selected().map(|individual| individual.id) {
             self.marked = Some(id);
             self.show_message(format!(
-                "individual {id} is marked: others are compared with it"
+                "individual {id} is marked; others are compared with it"
             ));
         }
     }
 
-    /// The individual that is looked at, and the one of its generation that it is compared
-    /// with: the marked one, else the best, else the second.
+    /// Returns the inspected individual and the one that it is compared with.
+    ///
+    /// That is the marked individual if it is of the same generation, else the best, else the
+    /// second best.
     #[must_use]
     pub fn rivals(&self) -> Option<[&RankedRecord; 2]> {
         let (generation, selected) = self.inspected()?;
@@ -350,14 +355,17 @@ impl ViewContext {
         Some([selected, marked.or_else(|| others.next())?])
     }
 
-    /// The hierarchy of an individual; `None` where its text is none of this world.
+    /// Returns the hierarchy of an individual, or `None` if its text is not a hierarchy of this
+    /// world.
     #[must_use]
     pub fn tree(&self, individual: &RankedRecord) -> Option<Tree> {
         parse(&individual.tree, self.catalogue()).ok()
     }
 
-    /// The individual on the player as it was in the generation that it was taken from, else
-    /// the selected one of the generation shown; with the number of the generation.
+    /// Returns the inspected individual and the number of its generation.
+    ///
+    /// That is the individual of the rollout in the generation that it was taken from, else the
+    /// selected one of the shown generation.
     #[must_use]
     pub fn inspected(&self) -> Option<(u64, &RankedRecord)> {
         let staged = self.player.subject().and_then(|subject| {
@@ -369,19 +377,19 @@ impl ViewContext {
         staged.or_else(|| Some((self.shown()?.generation, self.selected()?)))
     }
 
-    /// The hierarchy of that individual.
+    /// Returns the hierarchy of the inspected individual.
     #[must_use]
     pub fn inspected_tree(&self) -> Option<Tree> {
         self.tree(self.inspected()?.1)
     }
 
-    /// The node of a hierarchy that is selected: the last where it has not so many.
+    /// Returns the index of the selected node in `tree`, the last node if `tree` has fewer.
     #[must_use]
     pub fn node_in(&self, tree: &Tree) -> usize {
         self.node.min(tree.nodes().len().saturating_sub(1))
     }
 
-    /// The individual that should be on the player.
+    /// Returns the individual that the player should switch to.
     pub(in crate::dashboard) fn wanted(&self) -> Option<Subject> {
         Some(Subject {
             generation: self.shown()?.generation,
@@ -389,7 +397,7 @@ impl ViewContext {
         })
     }
 
-    /// Whether evolution chooses what is on the player.
+    /// Returns whether the player follows the best individual of evolution.
     pub(in crate::dashboard) fn follows(&self) -> bool {
         self.mode != Mode::Replay
             && self.chosen == Chosen::Best
@@ -397,7 +405,7 @@ impl ViewContext {
             && !self.frozen()
     }
 
-    /// Says something to the person.
+    /// Shows a message to the user and adds it to the log.
     pub fn show_message(&mut self, text: impl Into<String>) {
         if self.log.len() == LOG {
             self.log.pop_front();
@@ -405,17 +413,17 @@ impl ViewContext {
         self.log.push_back((text.into(), self.clock));
     }
 
-    /// What was said and when, the latest last.
+    /// Returns the messages with their times, the latest last.
     #[must_use]
     pub fn log(&self) -> &VecDeque<(String, Duration)> {
         &self.log
     }
 
-    /// What was said last, while it is new.
+    /// Returns the latest message, while it is new.
     #[must_use]
     pub fn message(&self) -> Option<&str> {
         let (text, since) = self.log.back()?;
         let new = self.clock.saturating_sub(*since) <= MESSAGE_TIME;
-        (new).then_some(text)
+        new.then_some(text)
     }
 }

@@ -1,22 +1,23 @@
-//! What keys can do: the one list that input, hint bars and the help overlay read.
+//! The actions of the dashboard, in one list that the input, the hint bars and the help overlay
+//! share.
 
 use crate::dashboard::view_id::ViewId;
 
-/// Where a key does something.
+/// Where a key has an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// In every view.
     Everywhere,
-    /// In these views, full screen or as the panel that has the focus.
+    /// In these views, on the whole screen or as the panel with the focus.
     In(&'static [ViewId]),
-    /// In the menu of exports.
+    /// In the export menu.
     ExportMenu,
-    /// Where a question is asked.
+    /// While a question is open.
     Question,
 }
 
 impl Scope {
-    /// Whether a key could mean both of two actions.
+    /// Returns whether one key could mean both of two actions.
     #[must_use]
     pub fn meets(self, other: Self) -> bool {
         match (self, other) {
@@ -29,7 +30,7 @@ impl Scope {
 
 macro_rules! actions {
     ($($(#[doc = $doc:literal])* $action:ident = $name:literal, $scope:expr, [$($key:literal),*], $hint:literal;)*) => {
-        /// Something that a key does.
+        /// An action that keys are bound to.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Action {
             $($(#[doc = $doc])* $action,)*
@@ -39,31 +40,31 @@ macro_rules! actions {
             /// All actions, in the order of the help overlay.
             pub const ALL: &'static [Self] = &[$(Self::$action),*];
 
-            /// Its name in key-map files.
+            /// Returns the name in the configuration file.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self { $(Self::$action => $name,)* }
             }
 
-            /// What it does, in a sentence.
+            /// Returns the effect in a sentence, for the help overlay.
             #[must_use]
             pub fn description(self) -> &'static str {
                 match self { $(Self::$action => concat!($($doc),*).trim_ascii(),)* }
             }
 
-            /// What it does, in a word or two.
+            /// Returns the effect in a word or two, for the hint bar.
             #[must_use]
             pub fn hint(self) -> &'static str {
                 match self { $(Self::$action => $hint,)* }
             }
 
-            /// Where it does so.
+            /// Returns where the action has an effect.
             #[must_use]
             pub fn scope(self) -> Scope {
                 match self { $(Self::$action => $scope,)* }
             }
 
-            /// The names of the keys that do it, where the person has not said otherwise.
+            /// Returns the names of the keys that are bound by default.
             #[must_use]
             pub fn default_keys(self) -> &'static [&'static str] {
                 match self { $(Self::$action => &[$($key),*],)* }
@@ -81,140 +82,140 @@ const ROLLOUT_VIEWS: &[ViewId] = &[V::Overview, V::Arena, V::Hierarchy, V::Stepp
 actions! {
     /// Show or hide this help.
     Help = "help", Everywhere, ["?", "f1"], "help";
-    /// Leave; a run is saved and can be resumed.
+    /// Quit; a live run is saved and can be resumed.
     Quit = "quit", Everywhere, ["q", "ctrl-c"], "quit";
-    /// Back: close what is open, return to the overview.
+    /// Go back: close the open window, or return to the overview.
     Back = "back", Everywhere, ["esc", "backspace"], "back";
-    /// Put the program into the background of the shell.
+    /// Suspend the program, as Ctrl-Z does in a shell.
     Suspend = "suspend", Everywhere, ["ctrl-z"], "suspend";
-    /// Draw the whole screen again.
+    /// Redraw the whole screen.
     Redraw = "redraw", Everywhere, ["ctrl-l"], "redraw";
 
-    /// Pause evolution, or let it go on.
+    /// Pause or resume evolution.
     Pause = "pause", Everywhere, ["p"], "pause";
-    /// Let evolution live one generation, then pause.
+    /// Evolve one more generation, then pause.
     StepGeneration = "step-generation", Everywhere, ["n"], "step";
     /// Save a checkpoint now.
     Checkpoint = "checkpoint", Everywhere, ["w"], "save";
-    /// Save and stop evolution; the dashboard stays.
+    /// Save and stop the run; the dashboard stays open.
     Stop = "stop", Everywhere, ["X"], "stop";
-    /// Hold all figures as they are while evolution goes on, or let them go.
+    /// Freeze or unfreeze the display; evolution continues.
     Freeze = "freeze", Everywhere, ["f"], "freeze";
 
-    /// The overview.
+    /// Show the overview.
     ViewOverview = "view-overview", Everywhere, ["1"], "overview";
-    /// The arena.
+    /// Show the arena.
     ViewArena = "view-arena", Everywhere, ["2"], "arena";
-    /// The hierarchy.
+    /// Show the task hierarchy.
     ViewHierarchy = "view-hierarchy", Everywhere, ["3"], "hierarchy";
-    /// Fitness and structural difference.
+    /// Show fitness and structural difference.
     ViewFitness = "view-fitness", Everywhere, ["4"], "fitness";
-    /// Primitive-selection probabilities.
+    /// Show primitive-selection probabilities.
     ViewPolicy = "view-policy", Everywhere, ["5"], "policy";
-    /// The population.
+    /// Show the population.
     ViewPopulation = "view-population", Everywhere, ["6"], "population";
-    /// What the run is doing, in full.
+    /// Show the status of the run.
     ViewStatus = "view-status", Everywhere, ["7"], "status";
-    /// The selected individual, taken apart.
+    /// Inspect the selected individual.
     ViewInspector = "view-inspector", Everywhere, ["8", "i"], "inspect";
-    /// What the selected individual would do all over the arena.
+    /// Show the policy of the selected individual as a map.
     ViewMap = "view-map", Everywhere, ["9", "m"], "policy map";
-    /// One time step, taken apart.
+    /// Step through a trial.
     ViewStepper = "view-stepper", Everywhere, ["0", "t"], "stepper";
-    /// Two individuals side by side.
+    /// Compare two individuals side by side.
     ViewCompare = "view-compare", Everywhere, ["c"], "compare";
-    /// The next panel.
+    /// Focus the next panel.
     NextPanel = "next-panel", In(&[V::Overview, V::Inspector]), ["tab"], "panel";
-    /// The panel before.
+    /// Focus the previous panel.
     PreviousPanel = "previous-panel", In(&[V::Overview, V::Inspector]), ["shift-tab"], "panel";
-    /// Open the panel that has the focus.
+    /// Open the focused panel or the selected item.
     Open = "open", Everywhere, ["enter"], "open";
 
-    /// Up.
+    /// Move up.
     Up = "up", Everywhere, ["up", "k"], "select";
-    /// Down.
+    /// Move down.
     Down = "down", Everywhere, ["down", "j"], "select";
-    /// Left.
+    /// Move left.
     Left = "left", Everywhere, ["left", "h"], "turn";
-    /// Right.
+    /// Move right.
     Right = "right", Everywhere, ["right", "l"], "turn";
-    /// A page up.
+    /// Move a page up.
     PageUp = "page-up", Everywhere, ["page-up", "ctrl-u"], "page up";
-    /// A page down.
+    /// Move a page down.
     PageDown = "page-down", Everywhere, ["page-down", "ctrl-d"], "page down";
-    /// To the top.
+    /// Move to the top.
     Top = "top", Everywhere, ["home", "g"], "top";
-    /// To the bottom.
+    /// Move to the bottom.
     Bottom = "bottom", Everywhere, ["end", "G"], "bottom";
 
-    /// The generation before.
+    /// Go to the previous generation.
     Earlier = "earlier", Everywhere, ["["], "earlier";
-    /// The next generation.
+    /// Go to the next generation.
     Later = "later", Everywhere, ["]"], "later";
-    /// Ten generations back.
+    /// Go back ten generations.
     MuchEarlier = "much-earlier", Everywhere, ["{"], "-10";
-    /// Ten generations on.
+    /// Go forward ten generations.
     MuchLater = "much-later", Everywhere, ["}"], "+10";
-    /// The first generation.
+    /// Go to the first generation.
     First = "first", Everywhere, ["<"], "first";
-    /// The latest generation, and follow evolution.
+    /// Go to the latest generation and follow evolution.
     Follow = "follow", Everywhere, [">"], "follow";
-    /// Let time run through the generations, or halt it.
+    /// Play through the generations, or stop playing.
     Play = "play", Everywhere, ["P"], "play";
 
     /// Select the best individual.
     Best = "best", Everywhere, ["b"], "best";
     /// Sort the table by the next column.
     Sort = "sort", In(&[V::Population]), ["s"], "sort";
-    /// Turn the table's order round.
+    /// Reverse the order of the table.
     Reverse = "reverse", In(&[V::Population]), ["S"], "reverse";
 
-    /// Halt the rollout, or let it go on.
+    /// Pause or resume the rollout.
     Halt = "halt", In(ROLLOUT_VIEWS), ["space"], "halt";
-    /// One time step of the rollout.
+    /// Advance the rollout by one time step.
     StepRollout = "step-rollout", In(ROLLOUT_VIEWS), ["."], "time step";
-    /// One recorded time step back.
+    /// Go back one recorded time step.
     StepBack = "step-back", In(&[V::Stepper]), [","], "step back";
-    /// The rollout faster.
+    /// Speed the rollout up.
     Faster = "faster", In(ROLLOUT_VIEWS), ["+", "="], "faster";
-    /// The rollout slower.
+    /// Slow the rollout down.
     Slower = "slower", In(ROLLOUT_VIEWS), ["-"], "slower";
-    /// A new rollout from another start.
+    /// Start a new rollout from another start state.
     Restart = "restart", In(ROLLOUT_VIEWS), ["r"], "new rollout";
 
-    /// Give this trial up and begin the next.
+    /// Abandon this trial and start the next.
     NextTrial = "next-trial", In(ROLLOUT_VIEWS), ["N"], "next trial";
 
-    /// Keep the selected individual to compare others with.
+    /// Mark the selected individual as the one to compare others with.
     Mark = "mark", Everywhere, ["M"], "mark";
-    /// Draw something else: another quantity, values instead of the policy.
+    /// Switch what is drawn: another quantity, or values instead of the policy.
     Mode = "mode", In(&[V::Inspector, V::PolicyMap]), ["v"], "values";
 
-    /// The next theme.
+    /// Switch to the next theme.
     Theme = "theme", Everywhere, ["T"], "theme";
-    /// Write what is on the screen to a file.
+    /// Export what is on the screen to a file.
     Export = "export", Everywhere, ["e"], "export";
-    /// The frame as text.
+    /// Frame as plain text.
     ExportText = "export-text", ExportMenu, ["t"], "frame as text";
-    /// The frame as text with colours (ANSI).
+    /// Frame as text with colours (ANSI).
     ExportAnsi = "export-ansi", ExportMenu, ["a"], "frame with colours";
-    /// The frame as a picture (SVG).
+    /// Frame as a picture (SVG).
     ExportSvg = "export-svg", ExportMenu, ["s"], "frame as SVG";
-    /// The hierarchy as a Graphviz graph (DOT).
+    /// Hierarchy as a Graphviz graph (DOT).
     ExportDot = "export-dot", ExportMenu, ["d"], "hierarchy as DOT";
-    /// The data as a table (CSV).
+    /// Data as a table (CSV).
     ExportCsv = "export-csv", ExportMenu, ["c"], "data as CSV";
 
     /// Yes.
     Yes = "yes", Question, ["y", "enter"], "yes";
     /// No.
     No = "no", Question, ["n"], "no";
-    /// Leave, and let the run go on without a terminal.
+    /// Detach: leave, and let the run continue without a terminal.
     Detach = "detach", Question, ["d"], "detach";
 }
 
 impl Action {
-    /// The action with this name.
+    /// Returns the action with this name.
     #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL
@@ -223,7 +224,7 @@ impl Action {
             .find(|action| action.name() == name)
     }
 
-    /// The view that it opens, if it opens one.
+    /// Returns the view that the action shows, if it shows one.
     #[must_use]
     pub fn view(self) -> Option<ViewId> {
         Some(match self {

@@ -8,8 +8,7 @@ use thiserror::Error;
 
 use crate::dashboard::look::Signs;
 
-/// A key as a person presses it: a character as it comes out, or a named key, with
-/// Ctrl or Alt.
+/// A key: a character as the terminal delivers it, or a named key, with Ctrl or Alt.
 ///
 /// Its text form is `x`, `?`, `space`, `enter`, `page-up`, `f1`, `ctrl-c`, `alt-left`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -46,7 +45,7 @@ const MODIFIERS: &[(&str, KeyModifiers)] = &[
 /// A text that names no key.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "found {found:?}; allowed: a character, f1 to f12, {}, each after ctrl- or alt- if wanted",
+    "found {found:?}; allowed: a character, f1 to f12, {}, each optionally prefixed with ctrl- or alt-",
     named()
 )]
 pub struct KeyError {
@@ -60,7 +59,7 @@ fn named() -> String {
 }
 
 impl Key {
-    /// The key of a character.
+    /// Returns the key of a character.
     #[must_use]
     pub const fn char(c: char) -> Self {
         Self {
@@ -69,7 +68,7 @@ impl Key {
         }
     }
 
-    /// The key of an event of the terminal; `None` for the release of a key.
+    /// Returns the key of a terminal event, or `None` for the release of a key.
     #[must_use]
     pub fn of(event: KeyEvent) -> Option<Self> {
         (event.kind != KeyEventKind::Release).then(|| Self::new(event.code, event.modifiers))
@@ -87,7 +86,7 @@ impl Key {
         Self { code, modifiers }
     }
 
-    /// Its name for people: arrows are arrows where there are signs for them.
+    /// Returns the name for hints: an arrow for an arrow key where the signs have one.
     #[must_use]
     pub fn label(self, signs: &Signs) -> String {
         let arrow = match self.code {
@@ -97,13 +96,14 @@ impl Key {
             KeyCode::Down => 6,
             _ => return self.to_string(),
         };
-        match self.modifiers.is_empty() && signs.dots {
-            true => signs.headings[arrow].to_owned(),
-            false => self.to_string(),
+        if self.modifiers.is_empty() && signs.dots {
+            signs.headings[arrow].to_owned()
+        } else {
+            self.to_string()
         }
     }
 
-    /// The character of a key without Ctrl and Alt.
+    /// Returns the character of a key that has neither Ctrl nor Alt.
     #[must_use]
     pub fn plain_char(self) -> Option<char> {
         match self.code {

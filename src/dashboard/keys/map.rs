@@ -1,4 +1,4 @@
-//! Which key does what.
+//! The key map: which key triggers which action.
 
 use thiserror::Error;
 
@@ -7,26 +7,26 @@ use super::key::{Key, KeyError};
 use crate::dashboard::look::{Signs, width};
 use crate::dashboard::view_id::ViewId;
 
-/// Which key does what.
+/// The key map: which key triggers which action.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeyMap {
     bindings: Vec<(Action, Vec<Key>)>,
 }
 
-/// One key that would mean two things.
+/// A key that is bound to two actions which can meet.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("key {key} is bound to {:?} and to {:?}, which meet in a view; allowed: one of them", .one.name(), .other.name())]
+#[error("key {key} is bound to {:?} and to {:?}, which apply in the same view; allowed: one action for each key", .one.name(), .other.name())]
 pub struct Collision {
     /// The key.
     pub key: Key,
-    /// What it would do.
+    /// One action.
     pub one: Action,
-    /// What else it would do.
+    /// The other action.
     pub other: Action,
 }
 
 impl Default for KeyMap {
-    /// The keys of the list of actions.
+    /// Returns the default keys of every action.
     fn default() -> Self {
         let parse = |action: Action| -> Result<Vec<Key>, KeyError> {
             action
@@ -36,7 +36,7 @@ impl Default for KeyMap {
                 .collect()
         };
         let bindings = Action::ALL.iter().map(|&action| {
-            // A test holds that every default is a key.
+            // A test checks that every default is a key.
             (action, parse(action).unwrap_or_default())
         });
         Self {
@@ -46,7 +46,7 @@ impl Default for KeyMap {
 }
 
 impl KeyMap {
-    /// Binds an action to these keys instead of those that it had.
+    /// Binds an action to `keys` in place of its former keys.
     pub fn bind(&mut self, action: Action, keys: Vec<Key>) {
         for (bound, its_keys) in &mut self.bindings {
             if *bound == action {
@@ -56,10 +56,10 @@ impl KeyMap {
         }
     }
 
-    /// Checks that no key means two things at one place.
+    /// Checks that no key means two actions in one place.
     ///
     /// # Errors
-    /// The first collision.
+    /// The first collision found.
     pub fn check(&self) -> Result<(), Collision> {
         for (index, (one, keys)) in self.bindings.iter().enumerate() {
             for (other, others) in &self.bindings[..index] {
@@ -73,7 +73,7 @@ impl KeyMap {
         Ok(())
     }
 
-    /// What a key does in a view.
+    /// Returns the action of a key in a view.
     #[must_use]
     pub fn in_view(&self, key: Key, view: ViewId) -> Option<Action> {
         self.find(key, |scope| match scope {
@@ -83,7 +83,7 @@ impl KeyMap {
         })
     }
 
-    /// What a key does where only this scope counts.
+    /// Returns the action of a key in exactly this scope.
     #[must_use]
     pub fn in_scope(&self, key: Key, wanted: Scope) -> Option<Action> {
         self.find(key, |scope| scope == wanted)
@@ -96,7 +96,7 @@ impl KeyMap {
             .map(|(action, _)| *action)
     }
 
-    /// The keys that do something; none if it is unbound.
+    /// Returns the keys of an action; none if it is unbound.
     #[must_use]
     pub fn keys(&self, action: Action) -> &[Key] {
         let mut bindings = self.bindings.iter();
@@ -105,8 +105,10 @@ impl KeyMap {
             .map_or(&[], |(_, keys)| keys)
     }
 
-    /// The first key of an action and what it does, such as `p pause`; of one that has an
-    /// opposite the keys of both, such as `↑↓ select`. `None` if it is unbound.
+    /// Returns the first key of an action and its hint, such as `p pause`, or `None` if it is
+    /// unbound.
+    ///
+    /// For an action with an opposite the keys of both are named, such as `↑↓ select`.
     #[must_use]
     pub fn hint(&self, action: Action, signs: &Signs) -> Option<(String, &'static str)> {
         let both = match action {
@@ -116,10 +118,8 @@ impl KeyMap {
         };
         let keys = both.iter().filter_map(|&action| self.keys(action).first());
         let labels: Vec<_> = keys.map(|key| key.label(signs)).collect();
-        let between = match labels.iter().all(|label| width(label) == 1) {
-            true => "",
-            false => "/",
-        };
+        let are_short = labels.iter().all(|label| width(label) == 1);
+        let between = if are_short { "" } else { "/" };
         (!labels.is_empty()).then(|| (labels.join(between), action.hint()))
     }
 }

@@ -1,4 +1,4 @@
-//! Keys: their names, what they do, and the one list that says so.
+//! Keys and actions: their names, and the key map between them.
 
 mod action;
 mod key;

@@ -1,4 +1,4 @@
-//! A canvas for lines: dots of a braille pattern where the signs have them, else cells.
+//! A canvas for lines, drawn in braille dots where the signs have them, else in whole cells.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -6,36 +6,37 @@ use ratatui::layout::Rect;
 use super::Look;
 use super::paint::Paint;
 
-/// What is drawn, and so which sign stands for it where cells cannot be divided. A later
-/// layer hides an earlier one in the same cell.
+/// The kind of a line, which selects its sign where cells have no dots. In a cell, a later
+/// layer hides an earlier one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
-    /// Where the agent has been.
+    /// The path of the agent.
     Trail,
     /// Proximity rays.
     Ray,
     /// Walls.
     Wall,
-    /// A curve of a chart: which.
+    /// A curve of a chart, by number.
     Curve(u8),
 }
 
-/// Lines in world coordinates on an area of the terminal; y points upwards.
+/// A canvas for lines in world coordinates on an area of the terminal; y points upwards.
 #[derive(Debug)]
 pub struct Canvas<'l> {
     look: &'l Look,
     area: Rect,
-    /// Lower left corner and size of what is shown, in world units.
+    /// Lower left corner and size of the visible part, in world units.
     origin: [f64; 2],
     extent: [f64; 2],
     cells: Vec<(u8, Option<(Layer, Paint)>)>,
 }
 
-/// Most points a line is drawn with: more than any screen has dots.
+/// Most points of a line: more than any screen has dots.
 const MAX_POINTS: f64 = 10_000.0;
 
 impl<'l> Canvas<'l> {
-    /// A canvas that shows `extent` from `origin` on in the whole of `area`.
+    /// Creates a canvas that fills `area` with the part of the world from `origin` of size
+    /// `extent`.
     #[must_use]
     pub fn new(look: &'l Look, area: Rect, origin: [f64; 2], extent: [f64; 2]) -> Self {
         let cells = usize::from(area.width) * usize::from(area.height);
@@ -48,15 +49,16 @@ impl<'l> Canvas<'l> {
         }
     }
 
-    /// Dots that a cell has.
+    /// Returns the number of dots in a cell, across and down.
     fn dots(&self) -> [f64; 2] {
-        match self.look.signs.dots {
-            true => [2.0, 4.0],
-            false => [1.0, 1.0],
+        if self.look.signs.dots {
+            [2.0, 4.0]
+        } else {
+            [1.0, 1.0]
         }
     }
 
-    /// A place in dots from the upper left; the far edges belong to the last dots.
+    /// Converts a place to dots from the upper left; the far edges belong to the last dots.
     fn in_dots(&self, at: [f64; 2]) -> [f64; 2] {
         let dots = self.dots();
         let columns = f64::from(self.area.width) * dots[0];
@@ -65,8 +67,7 @@ impl<'l> Canvas<'l> {
         [share(0) * (columns - 1.0), (1.0 - share(1)) * (rows - 1.0)]
     }
 
-    /// The cell, as column and row of the area, in which a place is; `None` where it is
-    /// outside.
+    /// Returns column and row of the cell of a place, or `None` outside the area.
     #[must_use]
     pub fn cell(&self, at: [f64; 2]) -> Option<(u16, u16)> {
         let (dots, [x, y]) = (self.dots(), self.in_dots(at));
@@ -79,7 +80,7 @@ impl<'l> Canvas<'l> {
         inside.then_some((column as u16, row as u16))
     }
 
-    /// The place in the middle of a cell.
+    /// Returns the place at the centre of a cell.
     #[must_use]
     pub fn place(&self, column: u16, row: u16) -> [f64; 2] {
         let share = |index: u16, count: u16| (f64::from(index) + 0.5) / f64::from(count.max(1));
@@ -105,7 +106,7 @@ impl<'l> Canvas<'l> {
         let (x, y) = (x as usize, y as usize);
         let [across, down] = dots.map(|count| count as usize);
         let index = y / down * usize::from(self.area.width) + x / across;
-        /// Bits of a braille pattern, row by row.
+        /// The bits of a braille pattern, row by row.
         const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
         if let Some((bits, top)) = self.cells.get_mut(index) {
             *bits |= BITS[y % down][x % across];
@@ -130,7 +131,7 @@ impl<'l> Canvas<'l> {
         }
     }
 
-    /// Puts everything drawn onto the terminal; where nothing is, what was there stays.
+    /// Copies the canvas to the buffer; cells without dots keep their contents.
     pub fn finish(&self, buffer: &mut Buffer) {
         let width = usize::from(self.area.width).max(1);
         for (index, (bits, top)) in self.cells.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Curves over a common axis.
+//! Charts: curves over a common axis, and sparklines.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -6,20 +6,21 @@ use ratatui::layout::Rect;
 use super::Look;
 use super::canvas::{Canvas, Layer};
 use super::paint::Paint;
+use super::signs::Signs;
 use super::text::{put, width};
 
 /// A curve: its points from left to right, and its paint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Places; where one is missing the curve is broken.
+    /// The points; the curve is interrupted where one is missing.
     pub points: Vec<Option<[f64; 2]>>,
-    /// How it is painted.
+    /// The paint.
     pub paint: Paint,
-    /// A letter at its end, so that it is told from others without colours too.
+    /// A letter at the end of the curve, which identifies it without colours.
     pub letter: Option<char>,
 }
 
-/// Curves over a common axis.
+/// A chart: curves over a common axis.
 ///
 /// ```text
 /// 1006 ⠒⢄   │      the largest value
@@ -29,22 +30,22 @@ pub struct Curve {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// The curves; the first is drawn over the others.
+    /// The curves; the first is drawn on top.
     pub curves: Vec<Curve>,
-    /// Ends of the axis.
+    /// The ends of the horizontal axis.
     pub across: [f64; 2],
-    /// Smallest and largest value shown.
+    /// The smallest and the largest value shown.
     pub up: [f64; 2],
-    /// A place of the axis that is marked.
+    /// A marked place on the horizontal axis.
     pub cursor: Option<f64>,
-    /// Digits after the point of the values' labels.
+    /// Number of decimals in the labels of the values.
     pub digits: usize,
-    /// Least columns before the curves: those of another chart above or below it.
+    /// Least columns before the curves, which align charts above each other.
     pub margin: u16,
 }
 
 impl Chart {
-    /// A chart that shows all points of some curves, and these values at least.
+    /// Creates a chart that shows all points of the curves, and at least the values `least`.
     #[must_use]
     pub fn of(curves: Vec<Curve>, least: [f64; 2]) -> Self {
         let points = || {
@@ -69,8 +70,8 @@ impl Chart {
         }
     }
 
-    /// Lets the ends of the values be round numbers: they are read easily, and stay where
-    /// they are while values change a little.
+    /// Rounds the range of values: round numbers read easily, and stay the same while values
+    /// change a little.
     #[must_use]
     pub fn rounded(mut self) -> Self {
         let [low, high] = self.up;
@@ -82,13 +83,13 @@ impl Chart {
         self
     }
 
-    /// The labels of the largest and the smallest value.
+    /// Returns the labels of the largest and the smallest value.
     fn labels(&self) -> [String; 2] {
         let digits = self.digits;
         [self.up[1], self.up[0]].map(|value| format!("{value:.digits$}"))
     }
 
-    /// Columns before the curves.
+    /// Returns the number of columns before the curves.
     #[must_use]
     pub fn left(&self) -> u16 {
         let labels = self.labels();
@@ -97,8 +98,8 @@ impl Chart {
             .max(u16::try_from(widest + 1).unwrap_or(u16::MAX))
     }
 
-    /// Draws it; the labels of the axis take the last row, those of the values the
-    /// first columns.
+    /// Draws the chart; the labels of the axis take the last row, those of the values the first
+    /// columns.
     pub fn draw(&self, look: &Look, area: Rect, buffer: &mut Buffer) {
         let dim = look.style(Paint::Dim);
         let labels = self.labels();
@@ -175,7 +176,7 @@ impl Chart {
     }
 }
 
-/// The least of 1, 2 and 5 times powers of ten that is not below a positive value.
+/// Rounds a positive value up to 1, 2 or 5 times a power of ten.
 fn round_up(value: f64) -> f64 {
     let power = 10_f64.powf(value.log10().floor());
     let steps = [1.0, 2.0, 5.0].map(|digit| digit * power);
@@ -183,7 +184,7 @@ fn round_up(value: f64) -> f64 {
     fits.unwrap_or(10.0 * power)
 }
 
-/// Digits after the point that two round numbers have.
+/// Returns the number of decimals of two round numbers.
 fn digits(numbers: [f64; 2]) -> usize {
     let is_whole = |number: f64| (number - number.round()).abs() < 1e-6;
     let shown = |digits: &i32| {
@@ -194,10 +195,11 @@ fn digits(numbers: [f64; 2]) -> usize {
     (0..6).find(shown).unwrap_or(6) as usize
 }
 
-/// Where an axis ends that counts something still going on: at the least of 10, 15, 20, 30, 40, 60
-/// and 80 times powers of ten that has room for `reached`, no further than `limit`. It stays there
-/// for a while, so that a place on the axis keeps its meaning, and two thirds of it are
-/// filled at least.
+/// Returns the end of an axis for a count that still grows: 10, 15, 20, 30, 40, 60 or 80 times
+/// a power of ten that is at least `reached`, but at most `limit`.
+///
+/// The end stays the same for a while, so that a place on the axis keeps its meaning, and at
+/// least two thirds of the axis are filled.
 #[must_use]
 pub fn axis_end(reached: u64, limit: u64) -> u64 {
     const STEPS: [u64; 7] = [10, 15, 20, 30, 40, 60, 80];
@@ -207,7 +209,7 @@ pub fn axis_end(reached: u64, limit: u64) -> u64 {
     end.min(limit.max(reached))
 }
 
-/// A range that is one.
+/// Returns a range that is finite and not empty.
 fn widened([low, high]: [f64; 2]) -> [f64; 2] {
     match (low.is_finite() && high.is_finite(), high > low) {
         (true, true) => [low, high],
@@ -227,8 +229,33 @@ fn draw_curve(canvas: &mut Canvas<'_>, curve: &Curve, layer: Layer) {
     }
 }
 
+/// Returns values as bars from left to right, in at most `columns` columns.
+///
+/// Values that share a column are averaged; fewer values take fewer columns. `low` and `high`
+/// are the range of the bars.
+#[must_use]
+pub fn sparkline(values: &[f64], [low, high]: [f64; 2], columns: usize, signs: &Signs) -> String {
+    let cells = values.len().min(columns);
+    let bars = (0..cells).map(|cell| {
+        let from = cell * values.len() / cells;
+        let part = &values[from..(cell + 1) * values.len() / cells];
+        let mean = part.iter().sum::<f64>() / part.len() as f64;
+        let share = (mean - low) / (high - low);
+        let levels = signs.bars.len() - 2;
+        let level = if share.is_finite() {
+            (share.clamp(0.0, 1.0) * levels as f64).round() as usize
+        } else {
+            0
+        };
+        // A value is never drawn as a blank.
+        signs.bars[1 + level.min(levels)]
+    });
+    bars.collect()
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::signs::UNICODE;
     use super::*;
 
     #[test]
@@ -255,5 +282,19 @@ mod tests {
         assert_eq!(labels([11.23, 11.9]), ["11.2", "11.9"]);
         assert_eq!(labels([7.0, 7.0]), ["7", "8"]);
         assert_eq!(labels([-1e308, 1e308]).len(), 2);
+    }
+
+    #[test]
+    fn the_range_is_from_the_lowest_bar_to_the_highest() {
+        let line = |values: &[f64], columns| sparkline(values, [0.0, 7.0], columns, &UNICODE);
+        assert_eq!(
+            line(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0], 20),
+            "▁▂▃▄▅▆▇█"
+        );
+        assert_eq!(line(&[0.0, 0.0, 7.0, 7.0, 0.0, 0.0], 3), "▁█▁");
+        assert_eq!(line(&[-9.0, 99.0, f64::NAN], 3), "▁█▁");
+        assert_eq!(line(&[], 3), "");
+        assert_eq!(line(&[1.0], 0), "");
+        assert_eq!(sparkline(&[5.0, 5.0], [5.0, 5.0], 9, &UNICODE), "▁▁");
     }
 }

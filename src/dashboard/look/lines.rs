@@ -1,4 +1,4 @@
-//! Lines of styled text, longer lists than an area has rows, and numbers in columns.
+//! Lines of styled text, scrolled lists, and numbers in columns.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -8,7 +8,7 @@ use super::Look;
 use super::paint::Paint;
 use super::text::{fitted, width};
 
-/// A line under construction: pieces of text, each with a paint.
+/// A builder of a line: pieces of text, each with a paint.
 pub(in crate::dashboard) struct Pen<'l> {
     look: &'l Look,
     spans: Vec<Span<'static>>,
@@ -16,7 +16,7 @@ pub(in crate::dashboard) struct Pen<'l> {
 }
 
 impl<'l> Pen<'l> {
-    /// An empty line.
+    /// Creates an empty line.
     pub(in crate::dashboard) fn new(look: &'l Look) -> Self {
         Self {
             look,
@@ -25,7 +25,7 @@ impl<'l> Pen<'l> {
         }
     }
 
-    /// Columns used so far.
+    /// Returns the number of columns used so far.
     pub(in crate::dashboard) fn column(&self) -> usize {
         self.column
     }
@@ -47,20 +47,20 @@ impl<'l> Pen<'l> {
         }
     }
 
-    /// Adds a text cut or filled up to some columns.
+    /// Adds a text, cut or padded to a number of columns.
     pub(in crate::dashboard) fn cell(self, text: &str, columns: usize, paint: Paint) -> Self {
         let end = self.column + columns;
         let text = fitted(text, columns, self.look.signs);
         self.text(text, paint).to(end)
     }
 
-    /// Adds a text that ends after some columns, one blank before it.
+    /// Adds a text that is aligned to the right in a number of columns.
     pub(in crate::dashboard) fn right(self, text: &str, columns: usize, paint: Paint) -> Self {
         let start = self.column + columns.saturating_sub(width(text));
         self.to(start).text(text, paint)
     }
 
-    /// Adds a horizontal bar: a share of some columns.
+    /// Adds a horizontal bar that fills a share of a number of columns.
     pub(in crate::dashboard) fn bar(self, share: f64, columns: usize, paint: Paint) -> Self {
         let filled = (share.clamp(0.0, 1.0) * columns as f64).round() as usize;
         let sign = self.look.signs.filled;
@@ -68,13 +68,14 @@ impl<'l> Pen<'l> {
         self.text(sign.repeat(filled), paint).to(end)
     }
 
-    /// The line.
+    /// Returns the line.
     pub(in crate::dashboard) fn line(self) -> Line<'static> {
         Line::from(self.spans)
     }
 }
 
-/// Draws lines from one on, as many as there is room for; says where some are left out.
+/// Draws as many lines as there is room for, starting with line `from`, and marks what is left
+/// out.
 pub(in crate::dashboard) fn draw_lines(
     look: &Look,
     lines: &[Line<'_>],
@@ -96,7 +97,7 @@ pub(in crate::dashboard) fn draw_lines(
     mark_more(look, [from, below], area, buffer);
 }
 
-/// Columns of a line without the blanks that it ends with.
+/// Returns the columns of a line without trailing blanks.
 fn written(line: &Line<'_>) -> usize {
     let text: String = line
         .spans
@@ -106,7 +107,7 @@ fn written(line: &Line<'_>) -> usize {
     width(text.trim_end())
 }
 
-/// Says how many lines there are above an area, and below.
+/// Draws the number of lines above and below an area.
 pub(in crate::dashboard) fn mark_more(
     look: &Look,
     [above, below]: [usize; 2],
@@ -126,12 +127,12 @@ pub(in crate::dashboard) fn mark_more(
     }
 }
 
-/// The last line from which a list still fills its rows.
+/// Returns the last start line from which a list still fills its rows.
 pub(in crate::dashboard) fn last_start(lines: usize, rows: u16) -> usize {
     lines.saturating_sub(usize::from(rows))
 }
 
-/// A value in at most eight columns.
+/// Returns a value in at most eight columns.
 pub(in crate::dashboard) fn number(value: f32) -> String {
     let size = value.abs();
     let text = match value {
@@ -143,8 +144,8 @@ pub(in crate::dashboard) fn number(value: f32) -> String {
     unsigned_zero(text)
 }
 
-/// Digits after the point with which the largest of some values has four in all, and no
-/// column is wider than eight.
+/// Returns the number of decimals that gives the largest of some values four digits, with no
+/// more than eight columns.
 pub(in crate::dashboard) fn decimals(values: impl IntoIterator<Item = f32>) -> usize {
     let sizes = values.into_iter().map(f32::abs);
     let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f32::max);
@@ -157,30 +158,34 @@ pub(in crate::dashboard) fn decimals(values: impl IntoIterator<Item = f32>) -> u
     }
 }
 
-/// A value with so many digits after the point, in at most eight columns.
+/// Returns a value with a number of decimals, in at most eight columns.
 pub(in crate::dashboard) fn fixed(value: f32, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
-    match value.is_finite() && text.len() <= 8 {
-        true => unsigned_zero(text),
-        false => number(value),
+    if value.is_finite() && text.len() <= 8 {
+        unsigned_zero(text)
+    } else {
+        number(value)
     }
 }
 
-/// Values smaller than this are nothing beside rewards: what is left of a value that has
-/// decayed for hundreds of updates.
+/// Smaller values are negligible beside rewards: remains of values that have decayed for
+/// hundreds of updates.
 pub(in crate::dashboard) const TINY: f32 = 1e-9;
 
-/// Whether a value is nothing beside rewards, but not zero.
+/// Returns whether a value is negligible beside rewards, but not zero.
 pub(in crate::dashboard) fn is_tiny(value: f32) -> bool {
     value != 0.0 && value.abs() < TINY
 }
 
-/// Two values with as many digits as tell them apart; those that are tiny as `nothing`.
+/// Returns two values with enough digits to tell them apart; tiny ones as `nothing`.
 pub(in crate::dashboard) fn told_apart(one: f32, other: f32, nothing: &str) -> [String; 2] {
     let values = [one, other];
-    let text = |value: f32, decimals| match is_tiny(value) {
-        true => nothing.to_owned(),
-        false => fixed(value, decimals),
+    let text = |value: f32, decimals| {
+        if is_tiny(value) {
+            nothing.to_owned()
+        } else {
+            fixed(value, decimals)
+        }
     };
     let texts = |decimals| values.map(|value| text(value, decimals));
     let mut some = (decimals(values)..=6).map(texts);
@@ -192,7 +197,7 @@ pub(in crate::dashboard) fn told_apart(one: f32, other: f32, nothing: &str) -> [
     })
 }
 
-/// What rounds to nothing has no sign.
+/// Removes the sign of a number that rounds to zero.
 fn unsigned_zero(text: String) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_owned(),
@@ -200,7 +205,7 @@ fn unsigned_zero(text: String) -> String {
     }
 }
 
-/// A probability as a percentage in four columns.
+/// Returns a probability as a percentage in four columns.
 pub(in crate::dashboard) fn percent(probability: f64) -> String {
     let percent = probability * 100.0;
     match percent {

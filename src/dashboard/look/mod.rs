@@ -1,28 +1,26 @@
-//! How things look: themes, signs, lines of text, the canvas.
+//! The look of the dashboard: themes, signs, text, charts, the canvas.
 
 mod canvas;
 mod chart;
 pub(in crate::dashboard) mod lines;
 mod paint;
 mod signs;
-mod spark;
 mod text;
 mod theme;
 
 pub use canvas::{Canvas, Layer};
-pub use chart::{Chart, Curve, axis_end};
+pub use chart::{Chart, Curve, axis_end, sparkline};
 pub use paint::Paint;
 pub use signs::Signs;
-pub use spark::sparkline;
 pub use text::{fitted, fitted_end, fitted_parts, one_line, put, shortened, width, wrapped};
 pub use theme::{StyleError, Theme};
 
 use ratatui::style::Style;
 
-/// Themes and signs in use.
+/// The themes and signs in use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
-    /// The themes that a key goes through; never empty.
+    /// The themes that the theme key cycles through; never empty.
     themes: Vec<Theme>,
     current: usize,
     /// The signs.
@@ -30,7 +28,7 @@ pub struct Look {
 }
 
 impl Look {
-    /// The theme of this place in the list, and the list to go through.
+    /// Creates a look that starts with the theme named `first`.
     #[must_use]
     pub fn new(themes: Vec<Theme>, first: &str, signs: &'static Signs) -> Self {
         let current = themes.iter().position(|theme| theme.name == first);
@@ -41,7 +39,7 @@ impl Look {
         }
     }
 
-    /// The style of a paint.
+    /// Returns the style of a paint.
     #[must_use]
     pub fn style(&self, paint: Paint) -> Style {
         self.themes
@@ -49,7 +47,7 @@ impl Look {
             .map_or_else(Style::new, |theme| theme.style(paint))
     }
 
-    /// Name of the theme in use.
+    /// Returns the name of the theme in use.
     #[must_use]
     pub fn theme(&self) -> &str {
         self.themes
@@ -57,7 +55,7 @@ impl Look {
             .map_or("", |theme| &theme.name)
     }
 
-    /// Goes on to the next theme.
+    /// Switches to the next theme.
     pub fn next_theme(&mut self) {
         self.current = (self.current + 1) % self.themes.len().max(1);
     }

@@ -1,8 +1,8 @@
-//! What there is to paint.
+//! Paints: the roles that a theme gives a style to.
 
 macro_rules! paints {
     ($($(#[doc = $doc:literal])* $paint:ident = $name:literal;)*) => {
-        /// Something that a theme gives a style to.
+        /// A role that a theme gives a style to.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Paint {
             $($(#[doc = $doc])* $paint,)*
@@ -12,7 +12,7 @@ macro_rules! paints {
             /// All paints, in the order of the themes' tables.
             pub const ALL: &'static [Self] = &[$(Self::$paint),*];
 
-            /// Its name in theme files.
+            /// Returns the name in the configuration file.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self { $(Self::$paint => $name,)* }
@@ -24,31 +24,31 @@ macro_rules! paints {
 paints! {
     /// Plain text.
     Text = "text";
-    /// Captions, units, what matters less.
+    /// Captions, units, less important text.
     Dim = "dim";
     /// Titles of panels.
     Title = "title";
     /// Borders.
     Border = "border";
-    /// Border and title of the panel that has the focus.
+    /// Border and title of the focused panel.
     Focus = "focus";
     /// Keys in hints and help.
     Key = "key";
-    /// What is well: running, delivered.
+    /// Good states: running, delivered.
     Good = "good";
-    /// What is not: stopped, failed.
+    /// Bad states: stopped, failed.
     Bad = "bad";
-    /// What asks for attention: paused, messages.
+    /// States that need attention: paused, messages.
     Notice = "notice";
     /// The selected line.
     Selected = "selected";
-    /// That the view is frozen, or in the past.
+    /// Marks of a frozen display or an earlier generation.
     Frozen = "frozen";
-    /// What is active: the path from root to action.
+    /// Active subtasks: the path from root to action.
     Active = "active";
     /// The best individual.
     Best = "best";
-    /// The middle of the better half.
+    /// The median of the better half.
     Median = "median";
     /// The worst of the better half.
     Worst = "worst";
@@ -60,27 +60,27 @@ paints! {
     Goal = "goal";
     /// Batteries, a passenger.
     Object = "object";
-    /// What is to be kept away from.
+    /// Places to avoid.
     Hazard = "hazard";
     /// Places with a name.
     Landmark = "landmark";
-    /// Where the agent has been.
+    /// The path of the agent.
     Trail = "trail";
-    /// Where the agent sees.
+    /// The field of view of the agent.
     Sight = "sight";
     /// Proximity rays.
     Ray = "ray";
-    /// The lowest values of a world of cells.
+    /// The lowest values in a world of cells.
     Shade1 = "shade-1";
-    /// Low ones.
+    /// Low values.
     Shade2 = "shade-2";
-    /// Those in the middle.
+    /// Medium values.
     Shade3 = "shade-3";
-    /// High ones.
+    /// High values.
     Shade4 = "shade-4";
-    /// The highest.
+    /// The highest values.
     Shade5 = "shade-5";
-    /// The first primitive subtask, and what else comes first.
+    /// The first primitive subtask, or the first of other series.
     Series1 = "series-1";
     /// The second.
     Series2 = "series-2";
@@ -95,7 +95,7 @@ paints! {
 }
 
 impl Paint {
-    /// The paint of the n-th of several things, from 0.
+    /// Returns the paint of the n-th series, from 0.
     #[must_use]
     pub fn series(n: usize) -> Self {
         const SERIES: [Paint; 6] = [
@@ -109,7 +109,7 @@ impl Paint {
         SERIES[n % SERIES.len()]
     }
 
-    /// The paint of a value at a place between the lowest, 0, and the highest, 1.
+    /// Returns the paint of a value between the lowest, 0, and the highest, 1.
     #[must_use]
     pub fn shade(share: f32) -> Self {
         const SHADES: [Paint; 5] = [
@@ -122,7 +122,7 @@ impl Paint {
         SHADES[(share * 5.0).clamp(0.0, 4.0) as usize]
     }
 
-    /// The paint with this name.
+    /// Returns the paint with this name.
     #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|paint| paint.name() == name)

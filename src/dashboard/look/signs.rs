@@ -1,19 +1,19 @@
-//! The signs that things are drawn with.
+//! The signs that the dashboard draws with.
 
 use ratatui::symbols::border;
 
 use crate::hierarchy::Glyphs;
 
-/// The signs that things are drawn with.
+/// The signs that the dashboard draws with.
 #[derive(Debug, PartialEq)]
 pub struct Signs {
-    /// Whether cells can be divided into dots: braille patterns.
+    /// Whether cells can be divided into the dots of braille patterns.
     pub dots: bool,
     /// The signs of trees.
     pub tree: Glyphs,
     /// Borders of panels.
     pub border: border::Set<'static>,
-    /// The agent, for eight headings from +x counter-clockwise.
+    /// The agent with a heading: eight headings from +x counter-clockwise.
     pub headings: [&'static str; 8],
     /// An agent without a heading.
     pub agent: &'static str,
@@ -23,64 +23,64 @@ pub struct Signs {
     pub object: &'static str,
     /// A hazard.
     pub hazard: &'static str,
-    /// A wall where cells cannot be divided.
+    /// A wall where cells have no dots.
     pub wall: &'static str,
-    /// The trail where cells cannot be divided.
+    /// The trail where cells have no dots.
     pub trail: &'static str,
-    /// Walls between the cells of a world: by the sum of 1 if one leads up from here, 2 down,
-    /// 4 to the left, 8 to the right.
+    /// Walls at a corner between cells, by the sum of 1 for a wall upwards, 2 downwards, 4 to
+    /// the left, 8 to the right.
     pub lines: [&'static str; 16],
-    /// A ray where cells cannot be divided.
+    /// A ray where cells have no dots.
     pub ray: &'static str,
-    /// Field of view where there is no colour to show it.
+    /// The field of view where there is no colour for it.
     pub sight: &'static str,
-    /// Levels from nothing to full, rising.
+    /// Bars from empty to full.
     pub bars: [&'static str; 9],
-    /// A filled part of a horizontal bar.
+    /// The filled part of a horizontal bar.
     pub filled: &'static str,
-    /// An unfilled part of a horizontal bar.
+    /// The unfilled part of a horizontal bar.
     pub unfilled: &'static str,
-    /// What points at the selected line.
+    /// The pointer to the selected line.
     pub pointer: &'static str,
-    /// What is lit: on the path from root to action.
+    /// An active subtask, on the path from root to action.
     pub lit: &'static str,
-    /// Ascending, descending order.
+    /// Ascending and descending order.
     pub order: [&'static str; 2],
-    /// Running, paused, stepping, finished, stopped.
+    /// A running run.
     pub running: &'static str,
-    /// Evolution waits.
+    /// A paused run.
     pub paused: &'static str,
-    /// One generation, then it waits.
+    /// A run that evolves one generation and then pauses.
     pub stepping: &'static str,
-    /// It is over.
+    /// A finished run.
     pub finished: &'static str,
-    /// It was stopped.
+    /// A stopped run.
     pub stopped: &'static str,
-    /// The view is frozen.
+    /// A frozen display.
     pub frozen: &'static str,
-    /// A text was cut here.
+    /// The end of a text that was cut.
     pub ellipsis: &'static str,
-    /// About: before a number that is not quite it.
+    /// The sign before an approximate number.
     pub about: &'static str,
-    /// Between parts of a line.
+    /// The separator between parts of a line.
     pub separator: &'static str,
-    /// Points of the best, the middle, the worst where cells cannot be divided.
+    /// Points of the best, median and worst curve where cells have no dots.
     pub series: [&'static str; 3],
-    /// The cursor in time.
+    /// The cursor at a generation.
     pub cursor: &'static str,
-    /// Between what was and what came of it.
+    /// The sign between a value before and after an update.
     pub becomes: &'static str,
-    /// So many times.
+    /// The multiplication sign.
     pub times: &'static str,
-    /// Temperature.
+    /// The temperature.
     pub tau: &'static str,
     /// The probability of a random choice.
     pub epsilon: &'static str,
-    /// Degrees.
+    /// The unit of degrees.
     pub degrees: &'static str,
 }
 
-/// Unicode signs, one column wide each.
+/// Unicode signs, each one column wide.
 pub static UNICODE: Signs = Signs {
     dots: true,
     tree: Glyphs::Unicode,
@@ -174,14 +174,14 @@ pub static ASCII: Signs = Signs {
 };
 
 impl Signs {
-    /// The sign of a heading in radians from +x, counter-clockwise.
+    /// Returns the sign of a heading in radians from +x, counter-clockwise.
     #[must_use]
     pub fn heading(&self, heading: f64) -> &'static str {
         let eighth = heading / std::f64::consts::FRAC_PI_4;
         self.headings[eighth.round().rem_euclid(8.0) as usize % 8]
     }
 
-    /// The signs of a glyph set.
+    /// Returns the signs of a glyph set.
     #[must_use]
     pub fn of(glyphs: Glyphs) -> &'static Self {
         match glyphs {

@@ -1,4 +1,4 @@
-//! Lines of text that fit, and that cannot steer a terminal.
+//! Text that fits its area and cannot send control codes to a terminal.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -7,14 +7,14 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use super::signs::Signs;
 
-/// Columns that a text takes.
+/// Returns the columns that a text takes.
 #[must_use]
 pub fn width(text: &str) -> usize {
     text.width()
 }
 
-/// A text as one line: control characters, line breaks and characters that cannot be
-/// seen are made visible.
+/// Returns a text as one line: control characters, line breaks and invisible characters are
+/// escaped.
 #[must_use]
 pub fn one_line(text: &str) -> String {
     let shown = |c: char| match c.width() {
@@ -24,7 +24,7 @@ pub fn one_line(text: &str) -> String {
     text.chars().flat_map(shown).collect()
 }
 
-/// A text cut to a number of columns; an ellipsis says so.
+/// Returns a text cut to a number of columns, with an ellipsis at the cut.
 #[must_use]
 pub fn fitted(text: &str, columns: usize, signs: &Signs) -> String {
     if text.width() <= columns {
@@ -45,9 +45,10 @@ pub fn fitted(text: &str, columns: usize, signs: &Signs) -> String {
     cut
 }
 
-/// A name in a number of columns: where it is too long its words are shortened, the longest
-/// first, so that each can still be told: `NavToPass` for `NavigateToPassenger`. A name of one
-/// word is cut.
+/// Returns a name shortened to a number of columns: `NavToPass` for `NavigateToPassenger`.
+///
+/// The longest words are shortened first, so that each stays recognisable. A name of one word
+/// is cut.
 #[must_use]
 pub fn shortened(name: &str, columns: usize, signs: &Signs) -> String {
     let mut words: Vec<String> = Vec::new();
@@ -62,7 +63,7 @@ pub fn shortened(name: &str, columns: usize, signs: &Signs) -> String {
         return fitted(name, columns, signs);
     }
     while excess > 0 {
-        // The first of the longest.
+        // The first one of the longest words.
         let longest = words
             .iter_mut()
             .rev()
@@ -73,15 +74,16 @@ pub fn shortened(name: &str, columns: usize, signs: &Signs) -> String {
     words.concat()
 }
 
-/// The end of a text in a number of columns; an ellipsis before it says what is left out.
+/// Returns the end of a text in a number of columns, with an ellipsis before it.
 #[must_use]
 pub fn fitted_end(text: &str, columns: usize, signs: &Signs) -> String {
     let turned = |text: &str| -> String { text.chars().rev().collect() };
     turned(&fitted(&turned(text), columns, signs))
 }
 
-/// As many parts of a text, from the first on, as a number of columns has room for; parts
-/// are separated by the separator's sign between blanks.
+/// Returns as many parts of a text as fit into a number of columns, from the first on.
+///
+/// Parts are separated by the separator sign between blanks.
 #[must_use]
 pub fn fitted_parts(text: &str, columns: usize, signs: &Signs) -> String {
     let separator = format!(" {} ", signs.separator);
@@ -96,8 +98,9 @@ pub fn fitted_parts(text: &str, columns: usize, signs: &Signs) -> String {
     fitted(&fits, columns, signs)
 }
 
-/// A text in lines of at most so many columns, broken between words; all lines but the first
-/// begin with an indent.
+/// Returns a text in lines of at most `columns` columns, broken between words.
+///
+/// All lines but the first begin with `indent`.
 #[must_use]
 pub fn wrapped(text: &str, columns: usize, indent: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -114,8 +117,8 @@ pub fn wrapped(text: &str, columns: usize, indent: &str) -> Vec<String> {
     lines
 }
 
-/// Writes a text into a row of an area from a column on, as far as there is room.
-/// Returns the column after it.
+/// Draws a text at a column and row of an area, as far as there is room; returns the column
+/// after it.
 pub fn put(buffer: &mut Buffer, area: Rect, at: (u16, u16), text: &str, style: Style) -> u16 {
     let area = area.intersection(buffer.area);
     let (column, row) = at;

@@ -10,16 +10,16 @@ use super::paint::Paint;
 /// A style for each paint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Theme {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// In the order of [`Paint::ALL`].
+    /// The styles, in the order of [`Paint::ALL`].
     styles: Vec<Style>,
 }
 
-/// A text that is no style.
+/// A text that is not a style.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "found {found:?}; allowed: words of {}, a colour, 'on' and a colour, where a colour is a \
+    "found {found:?}; allowed: any of {}, then a colour, then 'on' and a background colour; a colour is a \
      name such as red or light-blue, a number from 0 to 255, or #rrggbb",
     modifiers()
 )]
@@ -40,14 +40,14 @@ fn modifiers() -> String {
     MODIFIERS.map(|(name, _)| name).join(", ")
 }
 
-/// The themes that come with the program, each a column of [`TABLE`].
+/// The names of the built-in themes, each a column of [`TABLE`].
 const NAMES: [&str; 4] = ["dark", "light", "high-contrast", "mono"];
 
-/// Styles of each paint in the themes dark, light, high-contrast, mono.
+/// The style of each paint in the themes dark, light, high-contrast and mono.
 ///
-/// The colours of dark and light are of the 256-colour palette, whose upper 240 look
-/// the same in every terminal; high-contrast takes the terminal's own; mono takes none
-/// and tells things apart by weight, reversal and the signs themselves.
+/// Dark and light use the upper 240 colours of the 256-colour palette, which look the same in
+/// every terminal. High-contrast uses the terminal's own 16 colours. Mono uses none: it
+/// distinguishes by weight, reversal and the signs themselves.
 #[rustfmt::skip]
 const TABLE: &[(Paint, [&str; 4])] = &[
     (Paint::Text,     ["252",            "235",            "white",               ""]),
@@ -88,7 +88,7 @@ const TABLE: &[(Paint, [&str; 4])] = &[
 ];
 
 impl Theme {
-    /// The themes that come with the program: dark, light, high-contrast, mono.
+    /// Returns the built-in themes: dark, light, high-contrast, mono.
     #[must_use]
     pub fn all() -> Vec<Self> {
         NAMES
@@ -98,7 +98,7 @@ impl Theme {
             .collect()
     }
 
-    /// The theme without colours.
+    /// Returns the theme without colours.
     #[must_use]
     pub fn mono() -> Self {
         Self::column("mono", NAMES.len() - 1)
@@ -107,7 +107,7 @@ impl Theme {
     fn column(name: &str, column: usize) -> Self {
         let style = |paint: &Paint| {
             let row = TABLE.iter().find(|(painted, _)| painted == paint);
-            // A test holds that every style of the table can be read.
+            // A test checks that every style of the table can be read.
             row.and_then(|(_, texts)| read(texts[column]).ok())
                 .unwrap_or_default()
         };
@@ -117,16 +117,16 @@ impl Theme {
         }
     }
 
-    /// The style of a paint.
+    /// Returns the style of a paint.
     #[must_use]
     pub fn style(&self, paint: Paint) -> Style {
         self.styles.get(paint as usize).copied().unwrap_or_default()
     }
 
-    /// Gives a paint another style, as text such as `bold 214 on #202020`.
+    /// Changes the style of a paint; `text` is a style such as `bold 214 on #202020`.
     ///
     /// # Errors
-    /// When the text is no style.
+    /// When the text is not a style.
     pub fn set(&mut self, paint: Paint, text: &str) -> Result<(), StyleError> {
         let style = read(text)?;
         if let Some(old) = self.styles.get_mut(paint as usize) {

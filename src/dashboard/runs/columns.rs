@@ -1,4 +1,4 @@
-//! The columns of the table: what stands in them, how wide they are, what they sort by.
+//! The columns of the table: their texts, widths and sort orders.
 
 use std::cmp::Ordering;
 
@@ -8,7 +8,7 @@ use crate::dashboard::look::{Signs, one_line, width};
 /// A column of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Column {
-    Standing,
+    Status,
     Scenario,
     Arm,
     Seed,
@@ -18,11 +18,11 @@ pub(super) enum Column {
     Course,
 }
 
-use Column::{Arm, Best, Course, Fresh, Generations, Scenario, Seed, Standing};
+use Column::{Arm, Best, Course, Fresh, Generations, Scenario, Seed, Status};
 
-/// Columns with their heads and least widths, in their order.
+/// The columns with their headings and least widths, in display order.
 const COLUMNS: [(Column, &str, usize); 8] = [
-    (Standing, "state", 9),
+    (Status, "state", 9),
     (Scenario, "scenario", 9),
     (Arm, "arm", 9),
     (Seed, "seed", 5),
@@ -32,13 +32,13 @@ const COLUMNS: [(Column, &str, usize); 8] = [
     (Course, "course", 7),
 ];
 
-/// In which order columns are given up where there is little room.
-const GIVEN_UP: [Column; 4] = [Fresh, Course, Scenario, Generations];
+/// The order in which columns are dropped where there is little room.
+const DROPPED: [Column; 4] = [Fresh, Course, Scenario, Generations];
 
-/// Most columns of a sparkline: one for every few generations of a run.
+/// Most terminal columns of a sparkline.
 const LONGEST_COURSE: usize = 50;
 
-/// A column that there is room for.
+/// A column that has room.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub(super) column: Column,
@@ -47,7 +47,7 @@ pub(super) struct Placed {
 }
 
 impl Column {
-    /// The columns that the table can be sorted by, one after the other, and none.
+    /// Returns the column to sort by after `now`; `None` is the order of the study.
     pub(super) fn next(now: Option<Self>) -> Option<Self> {
         let sortable = &COLUMNS[..COLUMNS.len() - 1];
         let here = sortable
@@ -57,11 +57,11 @@ impl Column {
         sortable.get(next).map(|(column, ..)| *column)
     }
 
-    /// The order of two runs; what is not known comes last.
+    /// Compares two runs; unknown values come last.
     pub(super) fn compare(self, one: &RunRow, other: &RunRow) -> Ordering {
         let number = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
         match self {
-            Standing => one.standing.cmp(&other.standing),
+            Status => one.status.cmp(&other.status),
             Scenario => one.scenario.cmp(&other.scenario),
             Arm => one.arm.cmp(&other.arm),
             Seed => one.seed.cmp(&other.seed),
@@ -71,11 +71,11 @@ impl Column {
         }
     }
 
-    /// What stands in the table; a course is drawn.
+    /// Returns the text of a cell; empty for the course, which is drawn.
     pub(super) fn text(self, row: &RunRow, signs: &Signs) -> String {
         let steps = |steps: Option<f64>| steps.map_or(String::new(), |steps| format!("{steps:.1}"));
         match self {
-            Standing => format!("{} {}", row.standing.sign(signs), row.standing.word()),
+            Status => format!("{} {}", row.status.sign(signs), row.status.word()),
             Course => String::new(),
             Scenario => one_line(&row.scenario),
             Arm => one_line(&row.arm),
@@ -92,7 +92,7 @@ impl Column {
     }
 }
 
-/// The columns that there is room for, as wide as what stands in them asks for.
+/// Returns the columns that have room, as wide as their texts need.
 pub(super) fn place(rows: &[RunRow], room: usize, signs: &Signs) -> Vec<Placed> {
     let placed = COLUMNS.map(|(column, head, width)| Placed {
         column,
@@ -101,11 +101,11 @@ pub(super) fn place(rows: &[RunRow], room: usize, signs: &Signs) -> Vec<Placed> 
     });
     let mut placed = placed.to_vec();
     let needed = |placed: &[Placed]| placed.iter().map(|column| column.width + 1).sum::<usize>();
-    for given_up in GIVEN_UP {
+    for dropped in DROPPED {
         if needed(&placed) <= room {
             break;
         }
-        placed.retain(|placed| placed.column != given_up);
+        placed.retain(|placed| placed.column != dropped);
     }
     let mut left = room.saturating_sub(needed(&placed));
     for placed in &mut placed {

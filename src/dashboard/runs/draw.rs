@@ -1,10 +1,10 @@
-//! The table on the screen.
+//! Drawing of the table.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use super::columns::{Column, Placed, place};
-use super::row::{RunRow, Standing};
+use super::row::{RowStatus, RunRow};
 use super::table::RunsTable;
 use super::work::question;
 use crate::dashboard::chrome::header::{last_line, put_hints, put_message};
@@ -23,7 +23,7 @@ const HINTS: &[Action] = &[
     Action::Theme,
 ];
 
-/// Actions of the help overlay, after that of opening a run.
+/// Actions of the help window, after the open key.
 const HELP: &[Action] = &[
     Action::Up,
     Action::Down,
@@ -40,20 +40,21 @@ const HELP: &[Action] = &[
     Action::Quit,
 ];
 
-/// What there is to see and how to read it.
-const LESSON: &str = "\
-The runs of a study: scenario, arm (what is studied against
-what) and seed. best: mean time steps of a scored trial of the
-best individual of the latest generation; course: the same from
-the first generation on, falling as hierarchies get better, on
-one scale for all runs of a scenario. fresh: the structure of
-the winner, evaluated anew when the run is over: the luckiest of
-many looks better than it is. A run that is over or broken off
-opens as a replay, one that goes on is watched; q or esc in its
-overview comes back here.";
+/// The head of the help overlay.
+const HELP_TEXT: &str = "\
+The runs of a study, each with its scenario, its arm (one of the
+settings that the study compares) and its seed. best: mean time
+steps per scored trial of the best individual of the latest
+generation. course: the same from the first generation on, on
+one scale for all runs of a scenario; it falls as hierarchies
+improve. fresh: the structure of the winner, evaluated again in
+new trials after the run, because the luckiest of many looks
+better than it is. Enter replays a run that has finished or was
+interrupted, and watches one that is running; q or esc in its
+overview returns here.";
 
 impl RunsTable {
-    /// Draws everything on a buffer of any size.
+    /// Draws a frame into a buffer of any size.
     pub fn draw_on(&self, buffer: &mut Buffer) {
         let (look, area) = (&self.look, buffer.area);
         buffer.set_style(area, look.style(Paint::Text));
@@ -80,18 +81,18 @@ impl RunsTable {
             let titles = ("Help", "Runs of a study");
             window(look, titles, &self.help_lines(), scroll, area, buffer);
         }
-        if self.asked {
+        if self.question_open {
             let lines = question(&self.keys);
             window(look, ("Question", ""), &lines, 0, area, buffer);
         }
     }
 
     pub(super) fn help_lines(&self) -> Vec<Line> {
-        let lesson = LESSON.lines().map(plain);
+        let text = HELP_TEXT.lines().map(plain);
         let (open, _, paint) = line(&self.keys, Action::Open);
-        let open: Line = (open, String::from("Open the run that is pointed at"), paint);
+        let open: Line = (open, String::from("Open the selected run"), paint);
         let keys = HELP.iter().map(|&action| line(&self.keys, action));
-        lesson.chain([plain(""), open]).chain(keys).collect()
+        text.chain([plain(""), open]).chain(keys).collect()
     }
 
     /// ```text
@@ -99,15 +100,15 @@ impl RunsTable {
     /// ```
     fn draw_header(&self, area: Rect, buffer: &mut Buffer) {
         let look = &self.look;
-        let has = |standing| self.rows().iter().any(|row| row.standing == standing);
-        let all_done = || self.rows().iter().all(|row| row.standing == Standing::Done);
+        let has = |status| self.rows().iter().any(|row| row.status == status);
+        let all_done = || self.rows().iter().all(|row| row.status == RowStatus::Done);
         let (sign, word, paint) = match &self.rows {
             None => (look.signs.paused, "READING", Paint::Notice),
-            Some(_) if self.work.is_some() || has(Standing::Running) => {
+            Some(_) if self.work.is_some() || has(RowStatus::Running) => {
                 (look.signs.running, "RUNNING", Paint::Good)
             }
             Some(_) if all_done() => (look.signs.finished, "DONE", Paint::Good),
-            Some(_) => (look.signs.stopped, "NOBODY WORKS ON IT", Paint::Notice),
+            Some(_) => (look.signs.stopped, "IDLE", Paint::Notice),
         };
         let state = format!(" {sign} {word} ");
         let column = put(buffer, area, (0, 0), &state, look.style(paint));
@@ -126,12 +127,12 @@ impl RunsTable {
         put(buffer, area, (start, 0), &left, look.style(Paint::Dim));
     }
 
-    /// How many runs stand how.
+    /// Returns the number of runs for each status.
     fn counts(&self) -> String {
         let rows = self.rows();
-        let counts = Standing::ALL.iter().map(|&standing| {
-            let count = rows.iter().filter(|row| row.standing == standing).count();
-            (count, standing.word())
+        let counts = RowStatus::ALL.iter().map(|&status| {
+            let count = rows.iter().filter(|row| row.status == status).count();
+            (count, status.word())
         });
         let some = counts.filter(|(count, _)| *count > 0);
         let some: Vec<_> = some
@@ -143,11 +144,11 @@ impl RunsTable {
     fn draw_table(&self, area: Rect, buffer: &mut Buffer) {
         if self.rows.is_none() {
             let dim = self.look.style(Paint::Dim);
-            put(buffer, area, (1, 0), "the runs are being read", dim);
+            put(buffer, area, (1, 0), "reading the runs", dim);
             return;
         }
         let rows = self.rows();
-        // The first column is the pointer's.
+        // The first column is for the pointer.
         let room = usize::from(area.width.saturating_sub(1));
         let placed = place(rows, room, self.look.signs);
         self.draw_head(&placed, area, buffer);
@@ -161,7 +162,7 @@ impl RunsTable {
         }
     }
 
-    /// The heads of the columns; the one that the table is sorted by says so.
+    /// Draws the headings, with a mark on the column that the table is sorted by.
     fn draw_head(&self, placed: &[Placed], area: Rect, buffer: &mut Buffer) {
         let look = &self.look;
         let mut at = 1;
@@ -171,12 +172,11 @@ impl RunsTable {
             width,
         } in placed
         {
-            let (head, paint) = match Some(*column) == self.by {
-                true => {
-                    let sign = look.signs.order[usize::from(self.reversed)];
-                    (format!("{sign}{head}"), Paint::Title)
-                }
-                false => ((*head).to_owned(), Paint::Dim),
+            let (head, paint) = if Some(*column) == self.by {
+                let sign = look.signs.order[usize::from(self.reversed)];
+                (format!("{sign}{head}"), Paint::Title)
+            } else {
+                ((*head).to_owned(), Paint::Dim)
             };
             let text = aligned(*column, &head, *width);
             put(buffer, area, (at, 0), &text, look.style(paint));
@@ -193,17 +193,14 @@ impl RunsTable {
         buffer: &mut Buffer,
     ) {
         let look = &self.look;
-        let paint = |paint| match is_selected {
-            true => Paint::Selected,
-            false => paint,
-        };
+        let paint = |paint| if is_selected { Paint::Selected } else { paint };
         if is_selected {
             let style = look.style(Paint::Selected);
             buffer.set_style(line.intersection(buffer.area), style);
             put(buffer, line, (0, 0), look.signs.pointer, style);
         }
-        let plain = match row.standing {
-            Standing::Waiting => Paint::Dim,
+        let plain = match row.status {
+            RowStatus::Waiting => Paint::Dim,
             _ => Paint::Text,
         };
         let mut at = 1;
@@ -215,7 +212,7 @@ impl RunsTable {
                     let line = sparkline(&row.course, range, width, look.signs);
                     (line, Paint::Best)
                 }
-                Column::Standing => (column.text(row, look.signs), row.standing.paint()),
+                Column::Status => (column.text(row, look.signs), row.status.paint()),
                 column => (column.text(row, look.signs), plain),
             };
             let text = aligned(column, &fitted(&text, width, look.signs), width);
@@ -225,10 +222,11 @@ impl RunsTable {
     }
 }
 
-/// A text in its column: numbers end at its end.
+/// Aligns a text in its column: numbers to the right, words to the left.
 fn aligned(column: Column, text: &str, columns: usize) -> String {
-    match column.is_number() {
-        true => " ".repeat(columns.saturating_sub(width(text))) + text,
-        false => text.to_owned(),
+    if column.is_number() {
+        " ".repeat(columns.saturating_sub(width(text))) + text
+    } else {
+        text.to_owned()
     }
 }

@@ -1,8 +1,8 @@
-//! The table of a study's runs: how far each is, and which one to open.
+//! The table of a study's runs, from which a run can be opened.
 //!
-//! The table knows of runs what its rows say, and nothing of studies or folders: whoever
-//! drives it fills the rows and opens what a person has chosen. As the dashboard of a
-//! run it is a state, [`RunsTable::key`] and [`RunsTable::tell`], and a pure function that draws.
+//! The table knows only its rows, and nothing about studies or folders: its driver fills the
+//! rows and opens the run that the user chooses. Like the dashboard of one run it is a state
+//! with two functions, [`RunsTable::key`] and [`RunsTable::draw`].
 
 mod columns;
 mod draw;
@@ -10,6 +10,6 @@ mod row;
 mod table;
 mod work;
 
-pub use row::{RunRow, Standing};
+pub use row::{RowStatus, RunRow};
 pub use table::RunsTable;
 pub use work::{RunsEffect, RunsNews, Work};

@@ -1,59 +1,59 @@
-//! A row of the table, and how its run stands.
+//! A row of the table, and the status of its run.
 
 use crate::dashboard::look::{Paint, Signs};
 
-/// A run of a study, as the table shows it.
+/// A run of a study, as shown in the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunRow {
-    /// Name of its scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Name of its arm: the settings that are studied.
+    /// Name of the arm: one of the settings that the study compares.
     pub arm: String,
-    /// Its seed.
+    /// The seed.
     pub seed: u64,
-    /// How it stands.
-    pub standing: Standing,
-    /// Generations lived.
+    /// The status.
+    pub status: RowStatus,
+    /// Complete generations.
     pub generations: u64,
-    /// Mean time steps of a scored trial of the best individual, generation by generation.
+    /// Mean time steps per scored trial of the best individual, one value per generation.
     pub course: Vec<f64>,
-    /// Mean time steps of a trial of its winner's structure, evaluated anew.
+    /// Mean time steps per trial of the winner's structure, evaluated again after the run.
     pub fresh: Option<f64>,
-    /// What is wrong with it.
+    /// The error, if there is one.
     pub trouble: Option<String>,
 }
 
 impl RunRow {
-    /// Mean time steps of a scored trial of the best individual so far as is known.
+    /// Returns the latest value of the course.
     pub(super) fn best(&self) -> Option<f64> {
         self.course.last().copied()
     }
 }
 
-/// How a run stands.
+/// The status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Standing {
-    /// A process works on it.
+pub enum RowStatus {
+    /// A process is computing the run.
     Running,
-    /// It was begun, is not over, and nobody works on it.
-    BrokenOff,
-    /// Its folder cannot be read.
+    /// The run has started and has not finished, and no process is computing it.
+    Interrupted,
+    /// The run folder cannot be read.
     Unreadable,
-    /// This program could not do it.
+    /// The run has failed in this program.
     Failed,
-    /// Evolution is over, its winner is not evaluated yet.
+    /// Evolution has finished; the winner has not been evaluated yet.
     Evolved,
-    /// All is done.
+    /// Evolution and the evaluation of the winner have finished.
     Done,
-    /// It has not begun.
+    /// The run has not started.
     Waiting,
 }
 
-impl Standing {
-    /// All of them, what goes on and what asks for attention first.
+impl RowStatus {
+    /// All statuses: the active ones and those that need attention first.
     pub const ALL: [Self; 7] = [
         Self::Running,
-        Self::BrokenOff,
+        Self::Interrupted,
         Self::Unreadable,
         Self::Failed,
         Self::Evolved,
@@ -61,12 +61,12 @@ impl Standing {
         Self::Waiting,
     ];
 
-    /// In a word or two.
+    /// Returns the status in a word.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Running => "running",
-            Self::BrokenOff => "broken off",
+            Self::Interrupted => "interrupted",
             Self::Unreadable => "unreadable",
             Self::Failed => "failed",
             Self::Evolved => "evolved",
@@ -75,11 +75,11 @@ impl Standing {
         }
     }
 
-    /// In a sign, so that it is told without colours and reading.
+    /// Returns the sign of the status, which can be read without colours.
     pub(super) fn sign(self, signs: &Signs) -> &'static str {
         match self {
             Self::Running => signs.running,
-            Self::BrokenOff => signs.stopped,
+            Self::Interrupted => signs.stopped,
             Self::Unreadable | Self::Failed => "!",
             Self::Evolved => signs.stepping,
             Self::Done => signs.finished,
@@ -90,7 +90,7 @@ impl Standing {
     pub(super) fn paint(self) -> Paint {
         match self {
             Self::Running => Paint::Active,
-            Self::BrokenOff => Paint::Notice,
+            Self::Interrupted => Paint::Notice,
             Self::Unreadable | Self::Failed => Paint::Bad,
             Self::Evolved | Self::Done => Paint::Good,
             Self::Waiting => Paint::Dim,

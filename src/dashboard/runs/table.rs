@@ -1,4 +1,4 @@
-//! The table as a state: what is told of the runs, what keys and clicks do.
+//! The state of the table, and its response to keys and clicks.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use super::columns::Column;
-use super::row::{RunRow, Standing};
+use super::row::{RowStatus, RunRow};
 use super::work::{self, RunsEffect, RunsNews, Work};
 use crate::dashboard::chrome::overlay;
 use crate::dashboard::context::{Mouse, line_at};
@@ -24,28 +24,28 @@ pub struct RunsTable {
     pub(super) look: Look,
     pub(super) keys: KeyMap,
     pub(super) size: (u16, u16),
-    /// The runs in the order in which they were told; `None` before that.
+    /// The runs in the order of the study; `None` before they are read.
     pub(super) rows: Option<Vec<RunRow>>,
-    /// Smallest and largest value of the courses of a scenario, so that the sparklines of
-    /// its runs can be compared.
+    /// Smallest and largest value of all courses of a scenario, the common scale of their
+    /// sparklines.
     pub(super) ranges: BTreeMap<String, [f64; 2]>,
-    /// What the rows are sorted by; else they are in the order in which they were told.
+    /// The column that the rows are sorted by; `None` is the order of the study.
     pub(super) by: Option<Column>,
     pub(super) reversed: bool,
-    /// Place of the selected run in the rows that were told.
+    /// Index of the selected run in `rows`.
     pub(super) selected: usize,
-    /// Lines of help above the screen, while it is open.
+    /// The scroll position of the help, while it is open.
     pub(super) help: Option<u16>,
-    /// Work of this program on the runs, while it goes on.
+    /// The work of this program on the runs, while there is any.
     pub(super) work: Option<Work>,
-    /// Whether it was asked what becomes of the work, and not answered yet.
-    pub(super) asked: bool,
-    /// What was said since the last key.
+    /// Whether the question about the work is open.
+    pub(super) question_open: bool,
+    /// The message since the last key.
     pub(super) message: Option<String>,
 }
 
 impl RunsTable {
-    /// A table of the runs of the study with this name; `folder` is its folder, for people.
+    /// Creates the table of a study; `folder` is the study's folder, as shown to the user.
     #[must_use]
     pub fn new(name: String, folder: String, look: Look, keys: KeyMap) -> Self {
         Self {
@@ -61,37 +61,38 @@ impl RunsTable {
             selected: 0,
             help: None,
             work: None,
-            asked: false,
+            question_open: false,
             message: None,
         }
     }
 
-    /// Themes and signs in use.
+    /// Returns the themes and signs in use.
     #[must_use]
     pub fn look(&self) -> &Look {
         &self.look
     }
 
-    /// The terminal has so many columns and rows.
+    /// Sets the size of the terminal in columns and rows.
     pub fn resize(&mut self, columns: u16, rows: u16) {
         self.size = (columns, rows);
     }
 
-    /// Says something to the person, until the next key.
+    /// Shows a message until the next key.
     pub fn show_message(&mut self, text: impl Into<String>) {
         self.message = Some(text.into());
     }
 
-    /// The news of the runs, and of this program's work on them. Whether anything has changed.
-    pub fn take_in(&mut self, news: RunsNews) -> bool {
+    /// Updates the runs and the work on them; returns whether anything has changed.
+    pub fn update(&mut self, news: RunsNews) -> bool {
         let changed = self.work != news.work;
         self.work = news.work;
-        self.asked &= self.work.is_some();
-        self.tell(news.rows) || changed
+        self.question_open &= self.work.is_some();
+        self.set_rows(news.rows) || changed
     }
 
-    /// The runs as they are now, always in the same order. Whether anything has changed.
-    pub fn tell(&mut self, rows: Vec<RunRow>) -> bool {
+    /// Sets the rows, which must always have the same order; returns whether anything has
+    /// changed.
+    pub fn set_rows(&mut self, rows: Vec<RunRow>) -> bool {
         if self.rows.as_ref() == Some(&rows) {
             return false;
         }
@@ -108,14 +109,14 @@ impl RunsTable {
         true
     }
 
-    /// Takes in a key; returns what is to be done about it.
+    /// Handles a key; returns the effect that the caller must run.
     pub fn key(&mut self, key: Key) -> Option<RunsEffect> {
         self.message = None;
-        if self.asked {
-            self.asked = false;
+        if self.question_open {
+            self.question_open = false;
             return work::answer(&self.keys, key);
         }
-        // The table's keys are those of the table of a population.
+        // The table shares its keys with the population view.
         let action = self.keys.in_view(key, ViewId::Population);
         if let Some(scroll) = self.help {
             let lines = self.help_lines().len();
@@ -142,7 +143,7 @@ impl RunsTable {
                 self.look.next_theme();
                 self.show_message(format!("theme: {}", self.look.theme()));
             }
-            Action::Quit if self.work.is_some() => self.asked = true,
+            Action::Quit if self.work.is_some() => self.question_open = true,
             Action::Quit => return Some(RunsEffect::Leave),
             Action::Suspend => return Some(RunsEffect::Suspend),
             Action::Redraw => return Some(RunsEffect::Redraw),
@@ -151,10 +152,10 @@ impl RunsTable {
         None
     }
 
-    /// Selects the run at a place of the screen. Whether it was selected before.
+    /// Selects the run at a position of the screen; returns whether it was already selected.
     pub(super) fn click(&mut self, at: Position) -> bool {
         self.message = None;
-        if self.help.take().is_some() || std::mem::take(&mut self.asked) {
+        if self.help.take().is_some() || std::mem::take(&mut self.question_open) {
             return false;
         }
         let (width, height) = self.size;
@@ -166,7 +167,7 @@ impl RunsTable {
         clicked == Some(before)
     }
 
-    /// The places of the rows that there is room for below the head, that of the selected run
+    /// Returns the indices of the rows that have room below the headings, the selected one
     /// among them.
     pub(super) fn visible(&self, area: Rect) -> Vec<usize> {
         let sorted = self.sorted();
@@ -179,9 +180,9 @@ impl RunsTable {
 
     fn open(&mut self) -> Option<RunsEffect> {
         let row = self.rows().get(self.selected)?;
-        match (row.standing, &row.trouble) {
-            (Standing::Waiting, _) => self.show_message("this run has not begun"),
-            (Standing::Unreadable | Standing::Failed, Some(trouble)) => {
+        match (row.status, &row.trouble) {
+            (RowStatus::Waiting, _) => self.show_message("this run has not started"),
+            (RowStatus::Unreadable | RowStatus::Failed, Some(trouble)) => {
                 self.show_message(trouble.clone())
             }
             _ => return Some(RunsEffect::Open(self.selected)),
@@ -193,7 +194,7 @@ impl RunsTable {
         self.rows.as_deref().unwrap_or_default()
     }
 
-    /// The places of the rows, in the order in which they are shown.
+    /// Returns the indices of the rows in display order.
     fn sorted(&self) -> Vec<usize> {
         let rows = self.rows();
         let mut places: Vec<_> = (0..rows.len()).collect();
@@ -206,7 +207,7 @@ impl RunsTable {
         places
     }
 
-    /// Selects the run some lines further down.
+    /// Moves the selection `by` lines down.
     fn select(&mut self, by: isize) {
         let sorted = self.sorted();
         let here = sorted.iter().position(|&place| place == self.selected);
@@ -216,7 +217,7 @@ impl RunsTable {
         }
     }
 
-    /// The frame as it would be on a terminal of the present size.
+    /// Returns a frame of the current terminal size.
     #[must_use]
     pub fn frame(&self) -> Buffer {
         let (width, height) = self.size;
@@ -225,14 +226,12 @@ impl RunsTable {
         buffer
     }
 
-    /// Draws everything.
+    /// Draws a frame.
     pub fn draw(&self, frame: &mut Frame<'_>) {
         self.draw_on(frame.buffer_mut());
     }
-}
 
-impl RunsTable {
-    /// Does what the mouse asks for: a click on the run that is selected opens it.
+    /// Handles a mouse gesture: a click on the selected run opens it.
     pub fn mouse(&mut self, mouse: Mouse) -> Option<RunsEffect> {
         match mouse.what.scrolls() {
             Some(action) => self.perform(action),

@@ -1,5 +1,5 @@
-//! Work of this program on the runs of the table, and what becomes of it when a person
-//! leaves.
+//! The work of this program on the runs of the table, and the question about it when the user
+//! quits.
 
 use std::time::Duration;
 
@@ -8,39 +8,39 @@ use crate::dashboard::chrome::overlay::{Line, plain};
 use crate::dashboard::keys::{Action, Key, KeyMap, Scope};
 use crate::dashboard::look::Paint;
 
-/// Something to be done by whoever drives the table.
+/// An effect that the driver of the table must run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunsEffect {
-    /// Open the run of this row, by its place in the rows that were told.
+    /// Open the run of this row: an index into the rows of [`RunsNews`].
     Open(usize),
-    /// Leave; work of this program on the runs is to be saved and stopped.
+    /// Quit; save and stop the work of this program on the runs.
     Leave,
-    /// Leave, and go on with the work on the runs.
+    /// Quit the table, and continue the work on the runs.
     Detach,
-    /// Put the program into the background of its shell.
+    /// Suspend the program.
     Suspend,
-    /// Forget what is on the terminal and draw everything again.
+    /// Redraw the whole screen, whatever the terminal shows.
     Redraw,
 }
 
-/// What is new of the runs.
+/// News of the runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunsNews {
-    /// The runs as they are now, always in the same order.
+    /// The runs, always in the same order.
     pub rows: Vec<RunRow>,
-    /// Work of this program on them; `None` if it does none, or none any more.
+    /// The work of this program on the runs, if there is any.
     pub work: Option<Work>,
 }
 
-/// Work of this program on runs, which does not outlive it.
+/// The work of this program on runs, which ends with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
-    /// How long it will take, where that can be told.
+    /// The time left, if it is known.
     pub left: Option<Duration>,
 }
 
 impl Work {
-    /// How long it will take, in words, to the nearest unit that matters.
+    /// Returns the time left in words, to the nearest unit that matters.
     pub(super) fn words(self) -> Option<String> {
         let seconds = self.left?.as_secs();
         let (hours, minutes) = (seconds / 3600, seconds / 60);
@@ -52,25 +52,28 @@ impl Work {
     }
 }
 
-/// What is asked of a person who leaves while there is work, and what can be answered.
+/// Returns the lines of the question to a user who quits while there is work.
 pub(super) fn question(keys: &KeyMap) -> Vec<Line> {
     let answers = [
         (
             Action::Yes,
-            "save and stop; the same command goes on with it",
+            "save and stop; the same command resumes the study",
         ),
-        (Action::Detach, "leave, and go on with a progress bar"),
+        (
+            Action::Detach,
+            "leave the table; the runs continue with a progress bar",
+        ),
         (Action::No, "stay"),
     ];
     let line = |(action, text): (Action, &str)| {
         let keys: Vec<_> = keys.keys(action).iter().map(ToString::to_string).collect();
         (keys.join(" "), text.to_owned(), Paint::Text)
     };
-    let asked = plain("Runs of the study are being done. Stop them?");
+    let asked = plain("Runs of the study are in progress. Stop them?");
     [asked].into_iter().chain(answers.map(line)).collect()
 }
 
-/// What an answer leads to; any other key stays.
+/// Returns the effect of an answer; any other key closes the question.
 pub(super) fn answer(keys: &KeyMap, key: Key) -> Option<RunsEffect> {
     match keys.in_scope(key, Scope::Question) {
         Some(Action::Yes) => Some(RunsEffect::Leave),

@@ -1,4 +1,4 @@
-//! A world of cells: what is in each, what it is worth, where the agent would go from it.
+//! Drawing of a world of cells: the contents, value and greedy action of each cell.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -15,7 +15,7 @@ use crate::worlds::scene::{Role, Scenery};
 /// A sign with its style.
 type Sign<'s> = (&'s str, Style);
 
-/// Draws walls and cells. A cell has room for more, the larger it is:
+/// Draws walls and cells. A larger cell shows more:
 ///
 /// ```text
 /// ┏━━━━━━━·      ┏━━━━━━      ┏━━
@@ -53,29 +53,32 @@ pub(super) fn draw_cells(
                 None => ((share * 10.0).clamp(0.0, 9.0) as u32).to_string(),
             }),
         };
-        match is_hazard(scenery, centre) {
-            true => fill(look, place, buffer),
-            false => content.draw(look, place, buffer),
+        if is_hazard(scenery, centre) {
+            fill(look, place, buffer)
+        } else {
+            content.draw(look, place, buffer)
         }
     }
     lattice.draw_walls(look, &scenery.walls, buffer);
     lattice.draw_trail(look, &scene.trail, buffer);
 }
 
-/// Where a value stands between the lowest, 0, and the highest, 1: in the middle where all are
-/// the same but for what single precision makes of them.
+/// Returns the place of a value between the lowest, 0, and the highest, 1.
+///
+/// Returns 0.5 where lowest and highest differ by rounding alone.
 pub(in crate::dashboard) fn share(value: f32, [low, high]: [f32; 2]) -> f32 {
     let noise = 8.0 * f32::EPSILON * low.abs().max(high.abs());
-    match high - low > noise.max(f32::MIN_POSITIVE) {
-        true => (value - low) / (high - low),
-        false => 0.5,
+    if high - low > noise.max(f32::MIN_POSITIVE) {
+        (value - low) / (high - low)
+    } else {
+        0.5
     }
 }
 
-/// Digits after the point of the values; `None` where cells have room for no more than one
-/// digit in all.
+/// Returns the number of decimals of the values, or `None` where a cell has room for one digit
+/// only.
 fn decimals(values: Option<[f32; 2]>, cell: Rect) -> Option<usize> {
-    // In a single row stand an action and some signs besides.
+    // A cell of one row also holds an action and some signs.
     let taken = if cell.height > 1 { 0 } else { 4 };
     let room = usize::from(cell.width).saturating_sub(taken);
     let fits = |decimals: &usize| {
@@ -103,7 +106,7 @@ fn fill(look: &Look, place: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// What is in a cell, what matters most last.
+/// Returns the signs in a cell, the most important last.
 fn signs<'s>(
     look: &Look,
     scenery: &'s Scenery,
@@ -124,7 +127,7 @@ fn signs<'s>(
     signs
 }
 
-/// The greedy action of a cell: an arrow where it moves the agent, else the letter of its
+/// Returns the greedy action of a cell: an arrow if it moves the agent, else the letter of its
 /// subtask.
 fn action(context: &ViewContext, cell: &PolicyCell) -> Option<String> {
     let (subtask, _) = cell.greedy?;
@@ -142,7 +145,7 @@ fn letter(context: &ViewContext, subtask: SubtaskId) -> char {
     found.map_or('?', |(_, letter)| letter)
 }
 
-/// What stands in a cell.
+/// The contents of a cell.
 struct Content<'s> {
     signs: Vec<Sign<'s>>,
     action: Option<String>,
@@ -155,7 +158,7 @@ impl Content<'_> {
         let (bold, plain) = (look.style(Paint::Title), look.style(Paint::Text));
         let action = self.action.as_deref().unwrap_or("");
         let value = self.value.as_deref().unwrap_or("");
-        // From the right edge; in high cells everything is centred.
+        // Texts are aligned to the right edge, in high cells centred.
         let left = |text: &str| {
             let free = columns.saturating_sub(width(text));
             (if rows > 2 { free.div_ceil(2) } else { free }) as u16
@@ -181,7 +184,7 @@ impl Content<'_> {
         self.draw_signs(place, buffer);
     }
 
-    /// Writes what is here, what matters most where there is not room for all.
+    /// Draws the signs in the cell, the most important ones where room is short.
     fn draw_signs(&self, place: Rect, buffer: &mut Buffer) {
         let room = usize::from(place.width.saturating_sub(1).max(1));
         let skipped = self.signs.len().saturating_sub(room);

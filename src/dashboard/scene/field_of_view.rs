@@ -1,11 +1,11 @@
-//! What an agent sees: its field of view, walls being in the way.
+//! The part of a world that an agent sees.
 
 use crate::worlds::scene::{Scenery, Snapshot};
 
-/// Directions in which sight is measured.
+/// Number of directions in which the range is measured.
 const DIRECTIONS: usize = 181;
 
-/// How far an agent sees in each direction of its field of view.
+/// The field of view of an agent: its range in each direction, up to the nearest wall.
 #[derive(Debug)]
 pub(super) struct FieldOfView {
     at: [f64; 2],
@@ -15,7 +15,7 @@ pub(super) struct FieldOfView {
 }
 
 impl FieldOfView {
-    /// Of an agent that has a heading and a field of view.
+    /// Returns the field of view of an agent, if it has a heading and a view.
     pub(super) fn of(snapshot: &Snapshot, scenery: &Scenery) -> Option<Self> {
         let (view, heading) = (snapshot.view?, snapshot.heading?);
         let reach = (0..DIRECTIONS).map(|index| {
@@ -33,7 +33,7 @@ impl FieldOfView {
         })
     }
 
-    /// Whether a place is seen.
+    /// Returns whether a place is seen.
     pub(super) fn sees(&self, place: [f64; 2]) -> bool {
         let (dx, dy) = (place[0] - self.at[0], place[1] - self.at[1]);
         let turn = libm::atan2(dy, dx) - self.heading;
@@ -48,7 +48,8 @@ impl FieldOfView {
     }
 }
 
-/// Distance from a place in a direction of length 1 to a wall, if it is met.
+/// Returns the distance to a wall from a place in a direction of length 1, if the ray meets the
+/// wall.
 fn distance(from: [f64; 2], direction: [f64; 2], [start, end]: &[[f64; 2]; 2]) -> Option<f64> {
     let span = [end[0] - start[0], end[1] - start[1]];
     let offset = [start[0] - from[0], start[1] - from[1]];

@@ -1,15 +1,16 @@
-//! The lines between cells, where each cell has the same whole number of columns and rows.
+//! The layout of a world of cells, in which each cell has the same whole number of columns and
+//! rows.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::dashboard::look::{Look, Paint, put};
 
-/// Columns of a cell from which on its number has room.
+/// Least columns of a cell that has room for a number.
 const READABLE: u16 = 7;
 
-/// Where the cells of a world are on the terminal. Between cells is a line where there is
-/// room for one; around all of them always.
+/// The places of the cells on the terminal. There are lines around all cells, and between cells
+/// where there is room.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lattice {
     area: Rect,
@@ -17,25 +18,27 @@ pub(super) struct Lattice {
     rows: Axis,
 }
 
-/// One direction.
+/// One direction of the lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Axis {
     count: u16,
-    /// From cell to cell.
+    /// Distance from cell to cell.
     step: u16,
-    /// Whether there are lines between cells; each is the first of a step.
+    /// Whether there are lines between cells; a line is the first column or row of a step.
     lined: bool,
 }
 
 impl Axis {
-    /// The largest cells that fit, with lines between if they have at least `least`.
+    /// Returns the largest cells that fit, with lines between them if a step is at least
+    /// `least`.
     fn fitting(room: u16, count: usize, least: u16) -> Option<Self> {
         let count = u16::try_from(count).ok().filter(|count| *count > 0)?;
         let lined = room.saturating_sub(1) / count;
         let bare = room.saturating_sub(2) / count;
-        let (step, lined) = match lined >= least {
-            true => (lined, true),
-            false => (bare, false),
+        let (step, lined) = if lined >= least {
+            (lined, true)
+        } else {
+            (bare, false)
         };
         (step > 0).then_some(Self { count, step, lined })
     }
@@ -47,17 +50,17 @@ impl Axis {
         }
     }
 
-    /// What the cells with their lines take.
+    /// Returns the size of all cells and lines.
     fn total(self) -> u16 {
         self.count * self.step + if self.lined { 1 } else { 2 }
     }
 
-    /// What a cell has inside.
+    /// Returns the size of a cell without its line.
     fn inside(self) -> u16 {
         self.step - u16::from(self.lined)
     }
 
-    /// Where the line before the cell with this index is.
+    /// Returns the position of the line before a cell, if there is one.
     fn line(self, index: u16) -> Option<u16> {
         match (self.lined, index) {
             (true, _) => Some(index * self.step),
@@ -86,14 +89,14 @@ impl Lattice {
         })
     }
 
-    /// Column and row of every cell, from the upper left.
+    /// Returns column and row of every cell, from the upper left.
     pub(super) fn cells(self) -> impl Iterator<Item = (usize, usize)> {
         let columns = usize::from(self.columns.count);
         let rows = 0..usize::from(self.rows.count);
         rows.flat_map(move |row| (0..columns).map(move |column| (column, row)))
     }
 
-    /// Where a cell is, without the lines.
+    /// Returns the area of a cell without the lines.
     pub(super) fn inside(self, column: usize, row: usize) -> Rect {
         Rect {
             x: self.area.x + 1 + column as u16 * self.columns.step,
@@ -103,17 +106,17 @@ impl Lattice {
         }
     }
 
-    /// The centre of a cell in the world, y upwards.
+    /// Returns the centre of a cell in world coordinates, y upwards.
     pub(super) fn centre(self, column: usize, row: usize) -> [f64; 2] {
         let below = f64::from(self.rows.count) - row as f64;
         [column as f64 + 0.5, below - 0.5]
     }
 
-    /// Draws walls along the edges of cells, and shows where the corners of cells are.
+    /// Draws walls along the edges of cells, and dots at the corners of cells.
     pub(super) fn draw_walls(self, look: &Look, walls: &[[[f64; 2]; 2]], buffer: &mut Buffer) {
         let style = look.style(Paint::Wall);
         let top = f64::from(self.rows.count);
-        // Edges from a corner: up, down, left, right.
+        // Whether there are walls from a corner: up, down, left, right.
         let leads = |column: u16, row: u16| {
             let [x, y] = [f64::from(column), top - f64::from(row)];
             let middles = [[x, y + 0.5], [x, y - 0.5], [x - 0.5, y], [x + 0.5, y]];
@@ -149,7 +152,7 @@ impl Lattice {
         }
     }
 
-    /// Marks the edges over which the agent went from cell to cell, where there are lines.
+    /// Marks the edges that the agent crossed, where there are lines.
     pub(super) fn draw_trail(self, look: &Look, trail: &[[f64; 2]], buffer: &mut Buffer) {
         let style = look.style(Paint::Trail);
         for (from, to) in trail.iter().zip(trail.iter().skip(1)) {
@@ -164,18 +167,19 @@ impl Lattice {
 }
 
 impl Axis {
-    /// Where a place is: on the line between cells, or in the middle of one; `None` where
-    /// there is no line.
+    /// Returns the position of a place: on the line between cells, or in the middle of a cell;
+    /// `None` where there is no line.
     fn along(self, place: f64) -> Option<u16> {
         let cell = place.floor();
-        match place == cell {
-            true => self.line(cell as u16).filter(|_| self.lined),
-            false => Some(1 + cell as u16 * self.step + self.inside() / 2),
+        if place == cell {
+            self.line(cell as u16).filter(|_| self.lined)
+        } else {
+            Some(1 + cell as u16 * self.step + self.inside() / 2)
         }
     }
 }
 
-/// Whether a place is on a wall.
+/// Returns whether a place is on a wall.
 fn is_on([x, y]: [f64; 2], [from, to]: &[[f64; 2]; 2]) -> bool {
     let span = [to[0] - from[0], to[1] - from[1]];
     let way = [x - from[0], y - from[1]];

@@ -1,4 +1,4 @@
-//! What is drawn of a world besides its scenery, and the signs for it.
+//! What is drawn of a world besides its scenery, and its signs.
 
 use ratatui::style::{Modifier, Style};
 
@@ -11,16 +11,16 @@ use crate::worlds::scene::{Mark, Role, Scenery, Snapshot};
 pub(in crate::dashboard) struct Scene<'s> {
     /// The agent and its surroundings.
     pub(in crate::dashboard) snapshot: Option<&'s Snapshot>,
-    /// What can move or go, where it is while there is no agent to look at.
+    /// Movable marks, drawn while there is no snapshot.
     pub(in crate::dashboard) marks: &'s [Mark],
-    /// Where the agent has been.
+    /// Positions of the agent so far.
     pub(in crate::dashboard) trail: Vec<[f64; 2]>,
-    /// What the agent would do in each cell of a world of cells.
+    /// The policy in each cell, in a world of cells.
     pub(in crate::dashboard) cells: Option<&'s PolicyMap>,
 }
 
 impl Scene<'_> {
-    /// What stands somewhere, the agent apart.
+    /// Returns all marks except the agent.
     pub(in crate::dashboard) fn marks<'a>(
         &'a self,
         scenery: &'a Scenery,
@@ -30,7 +30,7 @@ impl Scene<'_> {
     }
 }
 
-/// What stands for a mark.
+/// Returns sign and style of a mark.
 pub(in crate::dashboard) fn sign<'m>(look: &Look, mark: &'m Mark) -> (&'m str, Style) {
     let signs = look.signs;
     let (sign, paint) = match mark.role {
@@ -42,7 +42,7 @@ pub(in crate::dashboard) fn sign<'m>(look: &Look, mark: &'m Mark) -> (&'m str, S
     (sign, look.style(paint))
 }
 
-/// What stands for the agent: a robot that carries something looks like what it carries.
+/// Returns sign and style of the agent; one that carries something has the object's style.
 pub(in crate::dashboard) fn agent(look: &Look, snapshot: &Snapshot) -> (&'static str, Style) {
     let sign = match snapshot.heading {
         Some(heading) => look.signs.heading(heading),

@@ -1,4 +1,4 @@
-//! Worlds, drawn: cell by cell, or in their true proportions.
+//! Drawings of worlds: cell by cell, or in true proportions.
 
 mod cells;
 mod field_of_view;
@@ -18,7 +18,7 @@ use self::lattice::Lattice;
 use self::plane::draw_plane;
 use super::context::ViewContext;
 
-/// Draws the world and, if there is one, the agent in it, as large as the area allows.
+/// Draws the world and the agent, if there is one, as large as the area allows.
 pub(in crate::dashboard) fn draw_scene(
     context: &ViewContext,
     scene: &Scene<'_>,
@@ -26,7 +26,7 @@ pub(in crate::dashboard) fn draw_scene(
     buffer: &mut Buffer,
 ) {
     let scenery = context.scenery();
-    // Where cells are too many for the area the world is drawn as one without cells.
+    // A world with too many cells for the area is drawn in proportion.
     let lattice = scenery.grid.and_then(|grid| Lattice::fitting(area, grid));
     if let Some(lattice) = lattice {
         return draw_cells(context, scene, lattice, buffer);

@@ -1,4 +1,4 @@
-//! A world and the agent in it, drawn in its true proportions.
+//! Drawing of a world in true proportions.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Rect};
@@ -9,8 +9,8 @@ use super::marks::{Scene, agent, sign};
 use crate::dashboard::look::{Canvas, Layer, Look, Paint, put};
 use crate::worlds::scene::{Mark, Scenery, Snapshot};
 
-/// The largest area in the middle that shows the extent in its true proportions, cells
-/// being about twice as high as wide.
+/// Returns the largest centred area that shows the extent in true proportions, for terminal
+/// cells twice as high as wide.
 pub(in crate::dashboard) fn in_proportion(area: Rect, extent: [f64; 2]) -> Rect {
     let ratio = 2.0 * extent[0] / extent[1];
     let (width, height) = (f64::from(area.width), f64::from(area.height));
@@ -22,8 +22,8 @@ pub(in crate::dashboard) fn in_proportion(area: Rect, extent: [f64; 2]) -> Rect 
     )
 }
 
-/// Shades what the agent sees, behind everything else.
-fn shade_sight(
+/// Shades the field of view, behind everything else.
+fn shade_field_of_view(
     look: &Look,
     canvas: &Canvas<'_>,
     scenery: &Scenery,
@@ -31,14 +31,14 @@ fn shade_sight(
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let Some(sight) = FieldOfView::of(snapshot, scenery) else {
+    let Some(field) = FieldOfView::of(snapshot, scenery) else {
         return;
     };
     let style = look.style(Paint::Sight);
     let coloured = style.bg.is_some();
     for row in 0..area.height {
         for column in 0..area.width {
-            if !sight.sees(canvas.place(column, row)) {
+            if !field.sees(canvas.place(column, row)) {
                 continue;
             }
             if coloured {
@@ -61,7 +61,7 @@ pub(in crate::dashboard) fn draw_mark(
     put_at(canvas, mark.at, sign(look, mark), area, buffer);
 }
 
-/// Writes a sign at a place, over what is there.
+/// Draws a sign at a place, over what is there.
 fn put_at(
     canvas: &Canvas<'_>,
     at: [f64; 2],
@@ -80,7 +80,7 @@ fn put_at(
     put(buffer, area, (column, row), sign, background.patch(style));
 }
 
-/// Draws the world and the agent in it, as large as the area allows.
+/// Draws the world and the agent, as large as the area allows.
 pub(super) fn draw_plane(
     look: &Look,
     scenery: &Scenery,
@@ -91,7 +91,7 @@ pub(super) fn draw_plane(
     let area = in_proportion(area, scenery.extent);
     let mut canvas = Canvas::new(look, area, [0.0, 0.0], scenery.extent);
     if let Some(snapshot) = scene.snapshot {
-        shade_sight(look, &canvas, scenery, snapshot, area, buffer);
+        shade_field_of_view(look, &canvas, scenery, snapshot, area, buffer);
         for (from, to) in scene.trail.iter().zip(scene.trail.iter().skip(1)) {
             canvas.line(*from, *to, Layer::Trail, Paint::Trail);
         }

@@ -1,5 +1,5 @@
-//! Populations of a run, read by a thread of its own: a file on a slow share takes its
-//! time, and keys do not wait for it.
+//! A thread that loads the populations of a run, so that keys need not wait for a file on a
+//! slow share.
 
 use std::io;
 use std::sync::Arc;
@@ -10,16 +10,16 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use crate::evolution::EvolutionState;
 use crate::lab::inspection::Archive;
 
-/// The population after a generation, or why it cannot be had.
+/// The population after a generation, or why it could not be loaded.
 #[derive(Debug)]
 pub(super) struct Loaded {
     pub(super) generation: u64,
     pub(super) state: Result<Arc<EvolutionState>, String>,
 }
 
-/// Reads populations until it is dropped.
+/// Loads populations until it is dropped.
 pub(super) struct Loader {
-    /// What was asked for.
+    /// The loaded populations.
     pub(super) loaded: Receiver<Loaded>,
     wanted: Sender<u64>,
 }
@@ -32,7 +32,8 @@ impl Loader {
             .name(String::from("populations"))
             .spawn(move || {
                 for generation in &asked {
-                    // Who travels on has no more use for the generations on the way.
+                    // Only the last request counts: the user has already moved past the earlier
+                    // ones.
                     let generation = asked.try_iter().last().unwrap_or(generation);
                     let state = archive.generation(generation);
                     let state = state.map_err(|error| error.to_string());
@@ -44,9 +45,9 @@ impl Loader {
         Ok(Self { loaded, wanted })
     }
 
-    /// Asks for the population after a generation.
+    /// Requests the population after a generation.
     pub(super) fn load(&self, generation: u64) {
-        // The thread ends when this does, not before.
+        // The thread cannot end before `self`, so sending cannot fail.
         let _sent = self.wanted.send(generation);
     }
 }

@@ -1,11 +1,9 @@
-//! A dashboard on a terminal: who is asked what, and when a frame is drawn.
+//! Dashboards on a terminal: the loop between events, keys, signals and frames.
 //!
-//! Events of the run are taken in a few times a second, however many there are, so that
-//! showing a run costs the same at any speed of evolution. Keys act, and are answered, when
-//! they are pressed. A frame is drawn when something has changed and the terminal has taken
-//! the last one.
+//! Events of the run are read a few times per second, however many there are, so that the
+//! dashboard costs the same at any speed of evolution. Keys act at once. A frame is drawn when
+//! something has changed and the terminal has taken the previous frame.
 
-mod exit;
 mod loader;
 mod runs;
 mod save;
@@ -19,9 +17,9 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, after};
 use crossterm::event::Event as Typed;
 
-pub use exit::Exit;
 pub use runs::{RunsExit, RunsSession};
 pub use source::{Live, Source};
+pub use wait::Exit;
 
 use super::app::App;
 use super::context::{Effect, Input, Mouse, ViewContext};
@@ -32,42 +30,41 @@ use crate::lab::{Liveness, Manifest, News, lasting_experiment};
 use loader::{Loaded, Loader};
 use wait::{WakeUp, wait};
 
-/// Time between two looks whether the program is in the foreground again.
+/// Interval at which a background program checks whether it is in the foreground again.
 const BACKGROUND: Duration = Duration::from_millis(250);
 
-/// Time between two looks for news of the run: generations that follow each other faster are
-/// read by nobody, and every number that changes costs bytes.
+/// Interval at which news of the run is read. Nobody can read faster generations, and every
+/// changed number costs bytes.
 const NEWS: Duration = Duration::from_millis(200);
 
-/// Shortest time between two frames: a key that repeats draws no more often.
+/// Shortest time between two frames, which limits redraws for a repeating key.
 const GAP: Duration = Duration::from_millis(25);
 
-/// A dashboard on a terminal.
+/// The dashboard of one run on a terminal.
 pub struct Session<'s> {
     app: App,
     loader: Loader,
     terminal: &'s mut Terminal,
     source: Source<'s>,
-    /// Whether it was opened from somewhere that a person may want to go back to.
-    within: bool,
-    /// Time between two frames.
+    /// Whether the dashboard was opened from a list of runs.
+    has_back: bool,
+    /// Time between two ticks.
     period: Duration,
     /// The run folder.
     folder: &'s Path,
     ticked: Instant,
-    /// When the news were taken in last, and when a frame was drawn.
-    heard: Option<Instant>,
+    /// When news was last read, and when a frame was last drawn.
+    read: Option<Instant>,
     drawn: Option<Instant>,
-    /// Whether something may have changed that was not drawn.
+    /// Whether a change may not have been drawn yet.
     due: bool,
 }
 
 impl<'s> Session<'s> {
-    /// A session of so many frames a second over the run in a folder, with the run's
-    /// populations.
+    /// Creates a session over the run in `folder`, whose populations come from `archive`.
     ///
     /// # Errors
-    /// When there can be no thread.
+    /// When the loader thread cannot be started.
     pub fn new(
         app: App,
         archive: Archive,
@@ -81,29 +78,31 @@ impl<'s> Session<'s> {
             loader: Loader::start(archive)?,
             terminal,
             source,
-            within: false,
+            has_back: false,
             period: Duration::from_secs_f64(1.0 / frames_per_second.clamp(0.1, 60.0)),
             folder,
             ticked: Instant::now(),
-            heard: None,
+            read: None,
             drawn: None,
             due: true,
         })
     }
 
-    /// A session that was opened from somewhere: going back from the overview leaves it.
+    /// Lets the back key end the session from the overview, for a session opened from a list of
+    /// runs.
     #[must_use]
-    pub fn within(mut self) -> Self {
-        self.within = true;
-        self.app = self.app.within(true);
+    pub fn with_back(mut self) -> Self {
+        self.has_back = true;
+        self.app = self.app.with_back(true);
         self
     }
 
-    /// Shows the run until somebody or something ends it. The run is as it was left then.
-    /// The screen is kept: dropping the terminal gives it back.
+    /// Shows the run until the session ends.
+    ///
+    /// The screen is kept; it is restored when the terminal is dropped.
     ///
     /// # Errors
-    /// When a frame cannot be made.
+    /// When a frame cannot be drawn.
     pub fn run(mut self, signals: &Receiver<i32>) -> io::Result<Exit> {
         if self.appear().is_err() {
             return Ok(Exit::HungUp);
@@ -131,13 +130,14 @@ impl<'s> Session<'s> {
     }
 
     fn period(&self) -> Duration {
-        match self.terminal.is_shown() {
-            true => self.period,
-            false => self.period.max(BACKGROUND),
+        if self.terminal.is_shown() {
+            self.period
+        } else {
+            self.period.max(BACKGROUND)
         }
     }
 
-    /// Takes in the time, once a frame, and the news of the run.
+    /// Passes the elapsed time to the dashboard once per period, and reads news of the run.
     fn tick(&mut self) -> Option<Exit> {
         let elapsed = self.ticked.elapsed();
         let first = self.app.context().clock.is_zero();
@@ -146,8 +146,8 @@ impl<'s> Session<'s> {
         }
         self.ticked = Instant::now();
         self.due = true;
-        if self.heard.is_none_or(|heard| heard.elapsed() >= NEWS)
-            && let Some(exit) = self.hear()
+        if self.read.is_none_or(|read| read.elapsed() >= NEWS)
+            && let Some(exit) = self.read_news()
         {
             return Some(exit);
         }
@@ -159,20 +159,20 @@ impl<'s> Session<'s> {
         (hidden && self.appear().is_err()).then_some(Exit::HungUp)
     }
 
-    /// Takes in all that is new of the run.
-    fn hear(&mut self) -> Option<Exit> {
-        self.heard = Some(Instant::now());
+    /// Reads all news of the run.
+    fn read_news(&mut self) -> Option<Exit> {
+        self.read = Some(Instant::now());
         let mut news = self.source.news().into_iter();
-        news.find_map(|news| self.take_in(news))
+        news.find_map(|news| self.handle(news))
     }
 
-    /// Takes in what is new of the run.
-    fn take_in(&mut self, news: News) -> Option<Exit> {
+    /// Handles one piece of news.
+    fn handle(&mut self, news: News) -> Option<Exit> {
         let effects = match news {
             News::Event(event) => self.app.update(Input::Event(Box::new(event))),
             News::Trouble(message) => self.app.update(Input::Message(message)),
             News::Run(manifest) => {
-                self.turn_to(*manifest);
+                self.switch_to(*manifest);
                 Vec::new()
             }
             News::Liveness(Liveness::Computing) => Vec::new(),
@@ -189,9 +189,9 @@ impl<'s> Session<'s> {
         self.run_effects(effects)
     }
 
-    /// Turns to another run that took the place of the one before. One that is told again
-    /// is taken in again.
-    fn turn_to(&mut self, manifest: Manifest) {
+    /// Switches to another run that has replaced this one in the folder. The same run is left
+    /// as it is.
+    fn switch_to(&mut self, manifest: Manifest) {
         let context = self.app.context();
         if (&manifest.scenario, manifest.seed)
             == (context.experiment.scenario(), context.experiment.seed())
@@ -199,26 +199,29 @@ impl<'s> Session<'s> {
             return;
         }
         let (look, keys) = (context.look.clone(), context.keys.clone());
-        let (mode, folder, within) = (context.mode, context.folder.clone(), context.within);
-        let turned = lasting_experiment(manifest.scenario, manifest.seed)
+        let (mode, folder, has_back) = (context.mode, context.folder.clone(), context.has_back);
+        let switched = lasting_experiment(manifest.scenario, manifest.seed)
             .map_err(|error| error.to_string())
             .and_then(|experiment| {
                 let archive = Archive::new(experiment, self.folder, None);
                 self.loader = Loader::start(archive).map_err(|error| error.to_string())?;
-                Ok(App::new(ViewContext::new(experiment, folder, mode, look, keys)).within(within))
+                Ok(
+                    App::new(ViewContext::new(experiment, folder, mode, look, keys))
+                        .with_back(has_back),
+                )
             });
-        match turned {
+        match switched {
             Ok(app) => {
                 self.app = app;
                 self.resize();
-                self.show_message("another run took the place of the one before");
+                self.show_message("another run has taken the place of this one");
             }
             Err(error) => self.show_message(&error),
         }
     }
 
-    /// Draws if there is something to draw and the terminal takes it; otherwise it is drawn
-    /// when the terminal has taken the frame before.
+    /// Draws if something has changed and the terminal is ready; otherwise the frame is drawn
+    /// as soon as the terminal has taken the previous one.
     fn draw(&mut self) -> io::Result<()> {
         if self.due && self.terminal.is_ready() && self.gap().is_zero() {
             self.due = false;
@@ -231,7 +234,7 @@ impl<'s> Session<'s> {
         Ok(())
     }
 
-    /// Time until the next frame may be drawn.
+    /// Returns the time until the next frame may be drawn.
     fn gap(&self) -> Duration {
         let since = self.drawn.map_or(GAP, |drawn| drawn.elapsed());
         GAP.min(self.period).saturating_sub(since)
@@ -239,7 +242,7 @@ impl<'s> Session<'s> {
 
     fn wait(&self, signals: &Receiver<i32>) -> WakeUp<Loaded> {
         let mut left = self.period().saturating_sub(self.ticked.elapsed());
-        // A terminal that is not ready tells when it is.
+        // A terminal that is not ready wakes the session when it is.
         if self.due && self.terminal.is_ready() {
             left = left.min(self.gap());
         }
@@ -252,7 +255,7 @@ impl<'s> Session<'s> {
             WakeUp::End(exit) => Some(exit),
             WakeUp::Typed(typed) => self.typed(typed),
             WakeUp::News(Loaded { generation, state }) => {
-                // What a person chose is shown at once, what evolution did in its time.
+                // A choice of the user is shown at once, news of evolution with the next tick.
                 self.due |= !self.app.context().follows();
                 let effects = self.app.update(Input::Population { generation, state });
                 self.run_effects(effects)
@@ -269,7 +272,7 @@ impl<'s> Session<'s> {
         }
     }
 
-    /// Acts on a key and on all that were pressed since, and hears what the run says to it.
+    /// Handles a key and all keys pressed since, then reads the run's reply.
     fn typed(&mut self, typed: Typed) -> Option<Exit> {
         let mut typed = Some(typed);
         while let Some(event) = typed {
@@ -282,7 +285,7 @@ impl<'s> Session<'s> {
             }
             typed = self.terminal.keys.try_recv().ok();
         }
-        self.hear()
+        self.read_news()
     }
 
     fn resize(&mut self) -> Option<Exit> {
@@ -296,12 +299,14 @@ impl<'s> Session<'s> {
         for effect in effects {
             match effect {
                 Effect::Quit => return Some(Exit::Left),
-                Effect::Back if self.within => return Some(Exit::Left),
+                Effect::Back if self.has_back => return Some(Exit::Left),
                 Effect::Back => {}
                 Effect::Detach => return Some(Exit::Detached),
                 Effect::Suspend => {
                     if !self.terminal.ask_to_suspend() {
-                        self.show_message("no shell waits that could continue the program");
+                        self.show_message(
+                            "cannot suspend: no shell is there to resume the program",
+                        );
                     }
                 }
                 Effect::Redraw => {
@@ -310,7 +315,7 @@ impl<'s> Session<'s> {
                     }
                 }
                 Effect::Load { generation } => self.loader.load(generation),
-                Effect::Export(export) => match save::save(Path::new("."), &export) {
+                Effect::Export(export) => match export.save(Path::new(".")) {
                     Ok(path) => self.show_message(&format!("written: {}", path.display())),
                     Err(error) => self.show_message(&format!("{}: {error}", export.name)),
                 },
@@ -322,24 +327,24 @@ impl<'s> Session<'s> {
 
     fn show_message(&mut self, text: &str) {
         self.due = true;
-        // What is said leads to nothing but its being read.
+        // A message has no effects.
         let _none = self.app.update(Input::Message(text.to_owned()));
     }
 }
 
-/// What is said of a run that is not being computed.
+/// Returns the message about a run that is not being computed.
 fn describe(life: Liveness) -> Option<&'static str> {
     match life {
         Liveness::Computing | Liveness::Over => None,
-        Liveness::Absent => Some("the run folder is gone; waiting for it"),
+        Liveness::Absent => Some("the run folder is gone; waiting for it to come back"),
         Liveness::Silent => {
-            Some("no sign of life: the run died or froze, or its folder is out of reach")
+            Some("no sign of life: the run has crashed or hangs, or its folder cannot be reached")
         }
-        Liveness::Stopped => Some("nobody computes this run; it can be resumed"),
+        Liveness::Stopped => Some("no process computes this run; it can be resumed"),
     }
 }
 
-/// What was done at the terminal, if it is of any account.
+/// Returns the input of a terminal event, or `None` for events that the dashboard ignores.
 fn input(typed: &Typed) -> Option<Input> {
     match typed {
         Typed::Key(event) => Key::of(*event).map(Input::Key),

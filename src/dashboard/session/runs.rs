@@ -1,4 +1,4 @@
-//! A table of runs on a terminal, until one is opened or the person leaves.
+//! The table of a study's runs on a terminal.
 
 use std::io;
 
@@ -11,12 +11,12 @@ use crate::dashboard::context::Input;
 use crate::dashboard::runs::{RunsEffect, RunsNews, RunsTable};
 use crate::dashboard::terminal::{Job, Terminal};
 
-/// Why a session over a table of runs is over.
+/// Why a session over a table of runs has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunsExit {
-    /// The run of this row is to be opened, by its place in the rows that were told.
+    /// The user opens the run of this row: an index into the rows of [`RunsNews`].
     Open(usize),
-    /// The program is to end.
+    /// The program should end.
     End(Exit),
 }
 
@@ -24,14 +24,14 @@ pub enum RunsExit {
 pub struct RunsSession<'s> {
     table: &'s mut RunsTable,
     terminal: &'s mut Terminal,
-    /// The runs, whenever somebody has looked at them.
+    /// News of the runs.
     news: &'s Receiver<RunsNews>,
-    /// Whether something has changed that was not drawn.
+    /// Whether a change has not been drawn yet.
     due: bool,
 }
 
 impl<'s> RunsSession<'s> {
-    /// A session over a table, with what is told of its runs from time to time.
+    /// Creates a session over a table that is updated from `news`.
     #[must_use]
     pub fn new(
         table: &'s mut RunsTable,
@@ -46,11 +46,12 @@ impl<'s> RunsSession<'s> {
         }
     }
 
-    /// Shows the table until a run is opened or somebody or something ends it. The screen is
-    /// kept: dropping the terminal gives it back.
+    /// Shows the table until a run is opened or the session ends.
+    ///
+    /// The screen is kept; it is restored when the terminal is dropped.
     ///
     /// # Errors
-    /// When a frame cannot be made.
+    /// When a frame cannot be drawn.
     pub fn run(mut self, signals: &Receiver<i32>) -> io::Result<RunsExit> {
         if self.appear().is_err() {
             return Ok(RunsExit::End(Exit::HungUp));
@@ -85,9 +86,10 @@ impl<'s> RunsSession<'s> {
     }
 
     fn wait(&self, signals: &Receiver<i32>) -> WakeUp<RunsNews> {
-        let again = match self.terminal.is_shown() {
-            true => never(),
-            false => after(BACKGROUND),
+        let again = if self.terminal.is_shown() {
+            never()
+        } else {
+            after(BACKGROUND)
         };
         wait(self.terminal, signals, self.news, &again)
     }
@@ -98,7 +100,7 @@ impl<'s> RunsSession<'s> {
             WakeUp::End(exit) => return Some(RunsExit::End(exit)),
             WakeUp::Silence => return Some(RunsExit::End(Exit::Failed)),
             WakeUp::Typed(typed) => return self.typed(&typed),
-            WakeUp::News(news) => self.due |= self.table.take_in(news),
+            WakeUp::News(news) => self.due |= self.table.update(news),
             WakeUp::Job(Job::Resize) => self.resize(),
             WakeUp::Job(Job::Suspend) => self.terminal.suspend(),
             WakeUp::Time if self.terminal.is_shown() => {}
@@ -124,7 +126,7 @@ impl<'s> RunsSession<'s> {
             RunsEffect::Leave => return Some(RunsExit::End(Exit::Left)),
             RunsEffect::Detach => return Some(RunsExit::End(Exit::Detached)),
             RunsEffect::Suspend if !self.terminal.ask_to_suspend() => {
-                let why = "no shell waits that could continue the program";
+                let why = "cannot suspend: no shell is there to resume the program";
                 self.table.show_message(why);
             }
             RunsEffect::Suspend => {}

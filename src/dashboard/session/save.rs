@@ -1,4 +1,4 @@
-//! Files that a person has asked for.
+//! Exported files.
 
 use std::fs::OpenOptions;
 use std::io::{self, ErrorKind, Write};
@@ -6,34 +6,35 @@ use std::path::{Path, PathBuf};
 
 use crate::dashboard::context::Export;
 
-/// Files of one name in a folder before there is no other name for one more.
+/// Most files of one name in a folder.
 const MOST: u32 = 10_000;
 
-/// Writes an export to a folder, beside what is there: nothing is ever overwritten.
-///
-/// # Errors
-/// When the operating system refuses, or no name is left.
-pub(super) fn save(folder: &Path, export: &Export) -> io::Result<PathBuf> {
-    let (stem, extension) = export
-        .name
-        .rsplit_once('.')
-        .unwrap_or((&export.name, "txt"));
-    for number in 1..=MOST {
-        let path = folder.join(match number {
-            1 => format!("{stem}.{extension}"),
-            number => format!("{stem}-{number}.{extension}"),
-        });
-        let made = OpenOptions::new().write(true).create_new(true).open(&path);
-        match made {
-            Ok(mut file) => {
-                file.write_all(export.contents.as_bytes())?;
-                return Ok(path);
+impl Export {
+    /// Writes the file into `folder` and returns its path.
+    ///
+    /// No file is ever overwritten: a number is added to a name that is taken.
+    ///
+    /// # Errors
+    /// When the operating system refuses, or no name is left.
+    pub fn save(&self, folder: &Path) -> io::Result<PathBuf> {
+        let (stem, extension) = self.name.rsplit_once('.').unwrap_or((&self.name, "txt"));
+        for number in 1..=MOST {
+            let path = folder.join(match number {
+                1 => format!("{stem}.{extension}"),
+                number => format!("{stem}-{number}.{extension}"),
+            });
+            let file = OpenOptions::new().write(true).create_new(true).open(&path);
+            match file {
+                Ok(mut file) => {
+                    file.write_all(self.contents.as_bytes())?;
+                    return Ok(path);
+                }
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
             }
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(error),
         }
+        Err(ErrorKind::AlreadyExists.into())
     }
-    Err(ErrorKind::AlreadyExists.into())
 }
 
 #[cfg(test)]
@@ -47,8 +48,8 @@ mod tests {
             name: String::from("tree.dot"),
             contents: contents.to_owned(),
         };
-        let first = save(folder.path(), &export("one")).unwrap();
-        let second = save(folder.path(), &export("two")).unwrap();
+        let first = export("one").save(folder.path()).unwrap();
+        let second = export("two").save(folder.path()).unwrap();
         let name = |path: &Path| path.file_name().unwrap().to_owned();
         assert_eq!(name(&first), "tree.dot");
         assert_eq!(name(&second), "tree-2.dot");

@@ -1,21 +1,21 @@
-//! Where a session's news come from, and where its commands go.
+//! The source of a session's news, and the destination of its commands.
 
 use crossbeam_channel::{Receiver, TryRecvError};
 
 use crate::dashboard::context::Effect;
 use crate::lab::{Activity, Controls, Event, Liveness, News, Recording, Watch};
 
-/// News that are taken in at once; if there are more, the others come with the next frame.
+/// Most news read at once; the rest follows with the next tick.
 const MOST: usize = 4096;
 
-/// Where news come from.
+/// The source of news.
 #[derive(Debug)]
 pub enum Source<'s> {
     /// A run of this process.
     Live(Live<'s>),
     /// A run of another process.
     Watched(&'s Watch),
-    /// A run that is not going on: all there is to tell, and nothing once it was told.
+    /// A run that is not being computed: all its news, which are delivered once.
     Recorded(Vec<News>),
 }
 
@@ -40,14 +40,14 @@ impl<'s> Source<'s> {
         })
     }
 
-    /// A run that is not going on.
+    /// Creates the source of a recorded run.
     #[must_use]
     pub fn recorded(recording: Recording) -> Self {
         let events = recording.events.into_iter().map(News::Event);
         Self::Recorded(events.chain([News::Liveness(recording.liveness)]).collect())
     }
 
-    /// What is new.
+    /// Returns the news since the last call.
     pub(super) fn news(&mut self) -> Vec<News> {
         match self {
             Self::Live(live) => live.news(),
@@ -56,7 +56,7 @@ impl<'s> Source<'s> {
         }
     }
 
-    /// Steers the run; what is not this process's is not steered.
+    /// Sends a command to a live run; does nothing for other runs.
     pub(super) fn steer(&self, effect: &Effect) {
         let Self::Live(Live { controls, .. }) = self else {
             return;
@@ -73,7 +73,7 @@ impl<'s> Source<'s> {
 }
 
 impl Live<'_> {
-    /// Commands to it.
+    /// Returns the controls of the run.
     #[must_use]
     pub fn controls(&self) -> &Controls {
         self.controls
@@ -97,12 +97,12 @@ impl Live<'_> {
         news
     }
 
-    /// What has become of a run that tells nothing more.
+    /// Returns the state of a run that emits no more events.
     fn life(&self) -> Liveness {
         match self.controls.activity() {
             _ if self.over => Liveness::Over,
             Activity::Stopped => Liveness::Stopped,
-            // It could not be recorded; joining it tells why.
+            // The run could not be recorded; joining it returns the error.
             _ => Liveness::Silent,
         }
     }

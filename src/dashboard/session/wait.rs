@@ -1,4 +1,4 @@
-//! What a session waits for, whatever it shows.
+//! What every session waits for, and why it ends.
 
 use std::io;
 use std::time::Instant;
@@ -7,28 +7,44 @@ use crossbeam_channel::{Receiver, select};
 use crossterm::event::Event as Typed;
 use signal_hook::consts::SIGHUP;
 
-use super::exit::Exit;
 use crate::dashboard::terminal::{Job, Terminal};
 
-/// What a session was woken by; `N` is what else it hears.
+/// Why a session has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// The user has quit.
+    Left,
+    /// The user has left; the run continues.
+    Detached,
+    /// The terminal is gone: the line dropped.
+    HungUp,
+    /// This signal asked the program to terminate.
+    Signal(i32),
+    /// A thread has panicked, and the terminal has been restored.
+    Panicked,
+    /// The run has failed.
+    Failed,
+}
+
+/// What a session was woken by; `N` is its kind of news.
 pub(super) enum WakeUp<N> {
-    /// A key or the mouse.
+    /// A key or a mouse gesture.
     Typed(Typed),
-    /// The shell or the window manager asks for something.
+    /// A job-control signal or a new window size.
     Job(Job),
     /// The terminal has taken a frame.
     Drawn,
-    /// Something has come in.
+    /// News has arrived.
     News(N),
-    /// Nothing more comes in.
+    /// No more news will arrive.
     Silence,
-    /// Time has gone by.
+    /// The time is up.
     Time,
-    /// Something that ends the session.
+    /// The session must end.
     End(Exit),
 }
 
-/// Waits for the terminal, for signals, for `news`, and for a time.
+/// Waits for the terminal, signals, news or the time, whichever comes first.
 pub(super) fn wait<N>(
     terminal: &Terminal,
     signals: &Receiver<i32>,
@@ -36,7 +52,7 @@ pub(super) fn wait<N>(
     time: &Receiver<Instant>,
 ) -> WakeUp<N> {
     select! {
-        // No more keys come from a terminal that is gone.
+        // A closed channel means that the terminal is gone.
         recv(terminal.keys) -> typed => typed.map_or(WakeUp::End(Exit::HungUp), WakeUp::Typed),
         recv(terminal.jobs) -> job => job.map_or(WakeUp::Time, WakeUp::Job),
         recv(terminal.drawn) -> drawn => drawn.map_or(WakeUp::Time, taken),

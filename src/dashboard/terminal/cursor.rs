@@ -1,11 +1,13 @@
-//! The shortest way for the cursor from one place to another.
+//! The shortest cursor movement from one position to another.
 
 use ratatui::layout::Position;
 
-/// The shortest sequence that moves the cursor to a place; `None` is a cursor that may be
-/// anywhere. Every terminal since the VT100 knows these: carriage return, line feed (which in
-/// raw mode keeps the column, and never scrolls where there is a line below) and backspace,
-/// CUU, CUD, CUF and CUB to go so many cells, CUP to go to a place (ECMA-48, 8.3.18 to 8.3.22).
+/// Returns the shortest sequence that moves the cursor to a position; `from` is `None` if the
+/// current position is unknown.
+///
+/// Every terminal since the VT100 knows the sequences in use: carriage return, line feed (which
+/// keeps the column in raw mode, and never scrolls where there is a line below), backspace,
+/// relative moves (CUU, CUD, CUF, CUB) and absolute ones (CUP; ECMA-48, 8.3.18 to 8.3.22).
 pub(super) fn shortest_way(from: Option<Position>, to: Position) -> String {
     let anywhere = match to.x {
         0 => format!("\x1b[{}H", to.y + 1),
@@ -23,12 +25,12 @@ pub(super) fn shortest_way(from: Option<Position>, to: Position) -> String {
             shorter("\u{8}".repeat(left.into()), go(left, 'D'))
         }
     };
-    // From the first column on it may be nearer, going back.
+    // Starting from the first column may be shorter.
     let columns = shorter(columns, format!("\r{}", go(to.x, 'C')));
     shorter(lines + &columns, anywhere)
 }
 
-/// Goes so many cells in a direction.
+/// Returns the sequence that moves a number of cells in a direction.
 fn go(cells: u16, direction: char) -> String {
     match cells {
         0 => String::new(),

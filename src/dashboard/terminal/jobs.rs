@@ -1,4 +1,4 @@
-//! What the shell and the window tell the program: stop, go on, another size.
+//! The signals of job control and of the window: suspend, continue, resize.
 
 use std::io;
 use std::thread;
@@ -7,24 +7,24 @@ use crossbeam_channel::{Receiver, bounded};
 use signal_hook::consts::{SIGCONT, SIGTSTP, SIGWINCH};
 use signal_hook::iterator::{Handle, Signals};
 
-/// What was told.
+/// A signal of job control or of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Job {
-    /// Give the terminal back and stop (SIGTSTP).
+    /// Restore the terminal and stop (SIGTSTP).
     Suspend,
-    /// The program goes on after it was stopped (SIGCONT).
+    /// The program continues after a stop (SIGCONT).
     Continue,
-    /// The window has another size (SIGWINCH).
+    /// The window has a new size (SIGWINCH).
     Resize,
 }
 
-/// Hears these signals until it is dropped.
+/// Receives these signals until it is dropped.
 #[derive(Debug)]
 pub(super) struct Jobs {
     handle: Handle,
 }
 
-/// News that wait; of more than these the later ones say nothing new.
+/// Capacity of the queue; more signals than these would repeat earlier ones.
 const CAPACITY: usize = 16;
 
 impl Jobs {

@@ -1,4 +1,4 @@
-//! What a person does at the terminal, read by a thread of its own.
+//! A thread that reads keys and mouse events.
 
 use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
@@ -14,16 +14,16 @@ use rustix::io::Errno;
 
 use super::screen::Screen;
 
-/// Keys that wait to be acted upon before the terminal keeps them.
+/// Capacity of the queue; further keys stay in the terminal's own queue.
 const CAPACITY: usize = 1024;
 
-/// Time that crossterm is given to make an event of bytes that are there.
+/// Time for crossterm to parse an event from available bytes.
 const MOMENT: Duration = Duration::from_millis(1);
 
-/// Longest wait for the reader to be silent.
+/// Longest wait for the reader to stop reading.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Reads the terminal while it listens.
+/// The reader of the terminal, which reads only while it listens.
 #[derive(Debug)]
 pub(super) struct Keyboard {
     state: Arc<State>,
@@ -34,13 +34,13 @@ pub(super) struct Keyboard {
 struct State {
     listening: AtomicBool,
     ended: AtomicBool,
-    /// Whether the reader keeps its hands off the terminal.
+    /// Whether the reader has stopped reading.
     silent: Mutex<bool>,
     changed: Condvar,
 }
 
 impl Keyboard {
-    /// Also returns what is read; it ends when the terminal is gone.
+    /// Starts the reader; the receiver of its events disconnects when the terminal is gone.
     pub(super) fn start(screen: Arc<Screen>) -> io::Result<(Self, Receiver<Event>)> {
         let (sender, events) = bounded(CAPACITY);
         let (wake, woken) = UnixStream::pair()?;
@@ -64,19 +64,19 @@ impl Keyboard {
         Ok((Self { state, wake }, events))
     }
 
-    /// Begins to read, or to read again.
+    /// Starts or resumes reading.
     pub(super) fn listen(&self) {
         self.state.listening.store(true, Ordering::SeqCst);
         self.wake();
     }
 
-    /// Stops reading, so that what is typed reaches others; returns when it is so.
+    /// Pauses reading, so that other programs get the keys; returns when reading has stopped.
     pub(super) fn hush(&self) {
         self.state.listening.store(false, Ordering::SeqCst);
         self.wake();
         let silent = self.state.silent.lock();
         let silent = silent.unwrap_or_else(PoisonError::into_inner);
-        // A reader that does not answer has ended, or waits for its events to be taken.
+        // A reader that does not answer has ended, or its queue is full.
         let _waited = self
             .state
             .changed
@@ -84,7 +84,7 @@ impl Keyboard {
     }
 
     fn wake(&self) {
-        // A full pipe wakes as well as one more byte.
+        // A full pipe wakes the reader just as well.
         let _full = (&self.wake).write(&[0]);
     }
 }
@@ -104,20 +104,22 @@ struct Reader {
 }
 
 impl Reader {
-    /// Reads until nobody listens any more or the terminal is gone. Every wait is for the
-    /// operating system: a terminal that is gone must not be asked again and again.
+    /// Reads until the keyboard is dropped or the terminal is gone.
+    ///
+    /// Every wait blocks in the operating system, so that a terminal that is gone is not polled
+    /// in a busy loop.
     fn run(self) {
         while !self.state.ended.load(Ordering::SeqCst) {
             let listening = self.state.listening.load(Ordering::SeqCst);
-            self.say_silent(!listening);
+            self.set_silent(!listening);
             if self.wait(listening).is_err() || (listening && self.read().is_err()) {
                 break;
             }
         }
-        self.say_silent(true);
+        self.set_silent(true);
     }
 
-    /// Waits for something to read, if the reader listens, or to be woken.
+    /// Waits until the reader is woken or, while it listens, there is something to read.
     fn wait(&self, listening: bool) -> io::Result<()> {
         let mut descriptors = [
             PollFd::new(&self.woken, PollFlags::IN),
@@ -140,7 +142,7 @@ impl Reader {
     fn read(&self) -> io::Result<()> {
         while self.state.listening.load(Ordering::SeqCst) && event::poll(MOMENT)? {
             let read = event::read()?;
-            // Sizes come with their signal.
+            // New sizes arrive with their signal.
             let told = match read {
                 Event::Resize(..) => Ok(()),
                 event => self.sender.send(event),
@@ -150,7 +152,7 @@ impl Reader {
         Ok(())
     }
 
-    fn say_silent(&self, is: bool) {
+    fn set_silent(&self, is: bool) {
         let silent = self.state.silent.lock();
         *silent.unwrap_or_else(PoisonError::into_inner) = is;
         self.state.changed.notify_all();

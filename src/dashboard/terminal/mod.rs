@@ -1,8 +1,8 @@
-//! The terminal's life: taken, drawn to, read from, lent to the shell, given back.
+//! The terminal: it is taken, drawn to, read from, lent to the shell, and restored.
 //!
-//! Three rules hold throughout. The terminal is given back on every way out. Nobody waits
-//! for it but the two threads that do nothing else: one writes, one reads. And a
-//! terminal that is gone is never asked again.
+//! Three rules hold throughout. The terminal is restored on every exit. Only two threads ever
+//! wait for it: one that writes and one that reads. A terminal that is gone is never used
+//! again.
 
 mod cursor;
 mod jobs;
@@ -38,11 +38,11 @@ use writer::Writer;
 /// The terminal of this process.
 #[derive(Debug)]
 pub struct Terminal {
-    /// What a person does; disconnected when the terminal is gone.
+    /// Keys and mouse events; disconnected when the terminal is gone.
     pub keys: Receiver<Event>,
-    /// What the shell and the window tell.
+    /// Signals of job control and of the window.
     pub jobs: Receiver<Job>,
-    /// Told when a frame has gone and another can be drawn; an error when the
+    /// Notified when a frame has been written and the next one can be drawn; an error when the
     /// terminal is gone.
     pub drawn: Receiver<io::Result<()>>,
     screen: Arc<Screen>,
@@ -53,11 +53,12 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// Opens the terminal of standard input; nothing is to be seen of that yet. From now on
-    /// a panic of any thread gives the terminal back before it is reported.
+    /// Opens the terminal of standard input, without any visible effect yet.
+    ///
+    /// From now on a panic of any thread restores the terminal before it is reported.
     ///
     /// # Errors
-    /// When standard input is no terminal, or the operating system refuses.
+    /// When standard input is not a terminal, or the operating system refuses.
     pub fn open(mouse: bool) -> io::Result<Self> {
         let screen = Screen::new(Tty::open()?, mouse);
         give_back_on_panic();
@@ -77,8 +78,9 @@ impl Terminal {
         })
     }
 
-    /// Takes the screen and reads keys; everything will be drawn anew. Does nothing while the
-    /// program is in the background.
+    /// Takes the screen and reads keys; the next frame is drawn completely.
+    ///
+    /// Does nothing while the program is in the background.
     ///
     /// # Errors
     /// When the terminal is gone.
@@ -93,34 +95,35 @@ impl Terminal {
         Ok(())
     }
 
-    /// Gives the screen back to the shell for a while.
+    /// Lends the screen to the shell.
     pub fn hide(&mut self) {
         self.keyboard.hush();
         self.screen.leave();
     }
 
-    /// Whether the screen is ours.
+    /// Returns whether the program has the screen.
     #[must_use]
     pub fn is_shown(&self) -> bool {
         self.screen.is_entered()
     }
 
-    /// Whether the terminal was given back for good: a thread has panicked.
+    /// Returns whether the terminal was restored for good because a thread has panicked.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.screen.is_closed()
     }
 
-    /// Whether a frame can be drawn now: the screen is ours and the last frame has gone.
+    /// Returns whether a frame can be drawn now: the program has the screen, and the previous
+    /// frame has been written.
     #[must_use]
     pub fn is_ready(&self) -> bool {
         self.is_shown() && self.writer.is_free()
     }
 
-    /// Draws a frame. Nothing is sent where nothing has changed.
+    /// Draws a frame; only changes are sent.
     ///
     /// # Errors
-    /// When bytes cannot be made of the frame.
+    /// When the frame cannot be encoded.
     pub fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) -> io::Result<()> {
         self.painter.draw(render)?;
         if let Some(frame) = self.painter.backend_mut().take_frame() {
@@ -129,7 +132,7 @@ impl Terminal {
         Ok(())
     }
 
-    /// The size of the window now.
+    /// Reads and returns the current size of the window.
     pub fn resize(&mut self) -> Size {
         let painter = self.painter.backend_mut();
         if let Some(size) = self.screen.tty.size() {
@@ -138,31 +141,32 @@ impl Terminal {
         painter.size
     }
 
-    /// Bytes of frames sent so far.
+    /// Returns the bytes of frames sent so far.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.screen.written()
     }
 
-    /// Asks the whole job, this program in it, to stop, as Ctrl-Z does outside of raw mode.
-    /// Returns whether that is possible: somebody must be there to continue it.
+    /// Asks the whole job to stop, as Ctrl-Z does outside of raw mode.
+    ///
+    /// Returns `false` if no shell could continue it.
     #[must_use]
     pub fn ask_to_suspend(&self) -> bool {
         tty::can_be_continued() && kill_current_process_group(Signal::TSTP).is_ok()
     }
 
-    /// Gives the screen back and stops this process until it is continued; the caller is told
-    /// [`Job::Continue`] then.
+    /// Restores the screen and stops this process until it is continued; the caller then
+    /// receives [`Job::Continue`].
     pub fn suspend(&mut self) {
         if tty::can_be_continued() {
             self.hide();
-            // Where stopping is not possible the program simply goes on.
+            // If the process cannot be stopped, it simply keeps running.
             let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP);
         }
     }
 
-    /// Goes on after the process was stopped: in the foreground the screen is taken and
-    /// drawn anew, in the background it is left to others.
+    /// Resumes after a stop: takes and redraws the screen in the foreground, leaves it alone in
+    /// the background.
     ///
     /// # Errors
     /// When the terminal is gone.

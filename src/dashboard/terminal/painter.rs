@@ -1,8 +1,7 @@
-//! Where ratatui paints: bytes for a terminal, as few as possible, collected until the
-//! frame is whole.
+//! A backend of ratatui that encodes a frame in as few bytes as possible.
 //!
-//! Half of what a frame would cost in reading order are changes of colour, so that everything
-//! of one look is painted in one go ([`StyleRuns`]); moves of the cursor are shorter than they.
+//! In reading order, changes of colour would take half of the bytes. All cells of one style are
+//! therefore painted together ([`StyleRuns`]): cursor moves are shorter than changes of colour.
 
 use std::io;
 
@@ -15,21 +14,22 @@ use super::cursor::shortest_way;
 use super::pen::Pen;
 use super::style_runs::StyleRuns;
 
-/// Tells the terminal to show what follows at once, when it is whole; the pen is new.
+/// Begins a synchronised update, and resets the pen.
 const BEGIN_FRAME: &[u8] = b"\x1b[?2026h\x1b[m";
-/// Tells the terminal that the frame is whole.
+/// Ends the synchronised update.
 const END_FRAME: &[u8] = b"\x1b[?2026l";
 
-/// Collects the bytes of one frame. The cursor is hidden as long as there are frames, so a
-/// frame in which nothing has changed has no bytes at all.
+/// The painter, which collects the bytes of one frame.
+///
+/// The cursor is hidden all the time, so that a frame without changes has no bytes at all.
 #[derive(Debug)]
 pub(super) struct Painter {
     bytes: Vec<u8>,
     pub(super) size: Size,
-    /// What the terminal shows.
+    /// The contents of the terminal.
     shown: Buffer,
     pen: Pen,
-    /// Where the next character goes, if that is known.
+    /// The position of the cursor, if it is known.
     cursor: Option<Position>,
 }
 
@@ -44,7 +44,8 @@ impl Painter {
         }
     }
 
-    /// The frame since the last call, wrapped so that it appears at once.
+    /// Returns the frame since the last call, wrapped in a synchronised update; `None` if it is
+    /// empty.
     pub(super) fn take_frame(&mut self) -> Option<Vec<u8>> {
         if self.bytes.is_empty() {
             return None;
@@ -56,8 +57,7 @@ impl Painter {
         Some(frame)
     }
 
-    /// Brings the cursor to a place: by printing again what stands on the way, where that is
-    /// not longer than a move.
+    /// Moves the cursor, or reprints the cells on the way if that is not longer than a move.
     fn go_to(&mut self, to: Position) {
         if self.cursor == Some(to) {
             return;
@@ -68,8 +68,8 @@ impl Painter {
         self.cursor = Some(to);
     }
 
-    /// What stands between the cursor and a place further on in its line, if it is not longer
-    /// than this and can be printed again without another pen.
+    /// Returns the text between the cursor and a position to the right, if it is not longer
+    /// than `longest` and needs no other pen.
     fn printed_way(&self, to: Position, longest: usize) -> Option<String> {
         let from = self.cursor.filter(|from| from.y == to.y && from.x < to.x)?;
         let mut text = String::new();
@@ -84,8 +84,8 @@ impl Painter {
         Some(text)
     }
 
-    /// Takes wide characters away that are about to be overwritten: terminals do not agree
-    /// on what is left of one of which half is.
+    /// Blanks wide characters that are about to be overwritten, because terminals differ in
+    /// what is left of half a character.
     fn wipe_wide(&mut self, content: &[(u16, u16, &Cell)]) {
         let blank = Cell::EMPTY;
         for &(x, y, cell) in content {
@@ -104,12 +104,12 @@ impl Painter {
         self.pen = to;
     }
 
-    /// Prints a cell with the pen that is in force.
+    /// Prints a cell with the current pen.
     fn print(&mut self, at: Position, cell: &Cell) {
         self.go_to(at);
         self.bytes.extend_from_slice(cell.symbol().as_bytes());
         let next = at.x.saturating_add(columns(cell));
-        // Behind the last column terminals differ.
+        // Terminals differ in where the cursor is after the last column.
         self.cursor = (next < self.size.width).then_some(Position::new(next, at.y));
         if let Some(shown) = self.shown.cell_mut(at) {
             shown.clone_from(cell);
@@ -117,7 +117,7 @@ impl Painter {
     }
 }
 
-/// Columns that a cell takes.
+/// Returns the columns that a cell takes.
 fn columns(cell: &Cell) -> u16 {
     u16::try_from(cell.symbol().width().max(1)).unwrap_or(u16::MAX)
 }
@@ -166,7 +166,7 @@ impl Backend for Painter {
         Ok(())
     }
 
-    /// The dashboard has the whole screen, so whatever is cleared is cleared whole.
+    /// Clears the whole screen, because the dashboard always owns all of it.
     fn clear_region(&mut self, _region: ClearType) -> io::Result<()> {
         self.clear()
     }
@@ -196,7 +196,7 @@ mod tests {
     const WIDTH: u16 = 12;
     const HEIGHT: u16 = 4;
 
-    /// A text somewhere in some style.
+    /// A text at a position in a style.
     type Stroke = (u16, u16, &'static str, Style);
 
     fn style() -> impl Strategy<Value = Style> {
@@ -218,7 +218,7 @@ mod tests {
         let looks = proptest::sample::select(looks.to_vec());
         (colour(), colour(), looks).prop_map(|(front, back, looks)| {
             let style = Style::new().fg(front).bg(back).add_modifier(looks);
-            // Bold and dim at once is another thing on every terminal.
+            // Terminals differ in bold and dim together.
             style.remove_modifier(looks.complement())
         })
     }
@@ -229,8 +229,8 @@ mod tests {
         (0..WIDTH, 0..HEIGHT, texts, style())
     }
 
-    /// Where a stroke covers the right half of a wide character, the left half goes too:
-    /// ratatui wants nothing behind a wide character but a blank.
+    /// Removes the left half of a wide character whose right half is covered: ratatui expects a
+    /// blank behind a wide character.
     fn without_halves(buffer: &mut Buffer) {
         for index in 1..buffer.content.len() {
             let [left, right] = [&buffer.content[index - 1], &buffer.content[index]];
@@ -240,7 +240,7 @@ mod tests {
         }
     }
 
-    /// What a terminal shows, cell by cell, blanks without what is not seen of them.
+    /// Returns the visible contents of a terminal, cell by cell.
     fn seen(screen: &vt100::Screen) -> Vec<String> {
         let mut cells = Vec::new();
         for row in 0..HEIGHT {
@@ -249,9 +249,10 @@ mod tests {
                 let blank = cell.contents().trim().is_empty();
                 let plain = blank && !cell.inverse() && !cell.underline();
                 let back = cell.bgcolor();
-                cells.push(match plain {
-                    true => format!("blank on {back:?}"),
-                    false => format!(
+                cells.push(if plain {
+                    format!("blank on {back:?}")
+                } else {
+                    format!(
                         "{:?} {:?} on {back:?} {} {} {} {}",
                         cell.contents().trim(),
                         cell.fgcolor(),
@@ -259,7 +260,7 @@ mod tests {
                         cell.dim(),
                         cell.underline(),
                         cell.inverse()
-                    ),
+                    )
                 });
             }
         }
@@ -274,8 +275,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Frame after frame the terminal shows what it would show had everything been
-        /// drawn on an empty screen by the plain backend.
+        /// After every frame the terminal shows the same as if everything had been drawn on an
+        /// empty screen by the plain backend.
         #[test]
         fn the_terminal_shows_what_was_painted(
             frames in prop::collection::vec(prop::collection::vec(stroke(), 0..8), 1..6)

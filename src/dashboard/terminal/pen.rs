@@ -1,17 +1,17 @@
-//! The look that a terminal gives to what is printed, and the shortest way to another.
+//! The style that a terminal prints with, and the shortest change to another.
 
 use std::fmt::Write;
 
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
 
-/// Looks that show on a blank.
+/// Attributes that are visible on a blank.
 const ON_BLANKS: Modifier = Modifier::REVERSED
     .union(Modifier::UNDERLINED)
     .union(Modifier::CROSSED_OUT);
 
-/// Each look with the parameters of SGR that begin it and end it (ECMA-48, 8.3.117). What ends
-/// bold ends dim too.
+/// Each attribute with the SGR parameters that set and reset it (ECMA-48, 8.3.117). The reset
+/// of bold resets dim too.
 const LOOKS: [(Modifier, u8, u8); 9] = [
     (Modifier::BOLD, 1, 22),
     (Modifier::DIM, 2, 22),
@@ -24,7 +24,7 @@ const LOOKS: [(Modifier, u8, u8); 9] = [
     (Modifier::CROSSED_OUT, 9, 29),
 ];
 
-/// Colours and looks that are in force.
+/// The current colours and attributes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Pen {
     front: Color,
@@ -33,8 +33,8 @@ pub(super) struct Pen {
 }
 
 impl Pen {
-    /// The pen that a cell needs, given the one that is in force: of a blank only the
-    /// background is seen.
+    /// Returns the pen that a cell needs when `self` is the current one; on a blank only the
+    /// background is visible.
     pub(super) fn for_cell(self, cell: &Cell) -> Self {
         let whole = Self {
             front: cell.fg,
@@ -51,8 +51,8 @@ impl Pen {
         }
     }
 
-    /// What takes the terminal from this pen to another: the shorter of a change and a new
-    /// start.
+    /// Returns the sequence from this pen to another: a change, or a reset with new settings,
+    /// whichever is shorter.
     pub(super) fn way_to(self, to: Self) -> String {
         if self == to {
             return String::new();
@@ -65,12 +65,12 @@ impl Pen {
             anew
         };
         let parameters = shorter.trim_end_matches(';');
-        // No parameter is the parameter 0.
+        // No parameter means 0.
         let parameters = if parameters == "0" { "" } else { parameters };
         format!("\x1b[{parameters}m")
     }
 
-    /// Parameters of a change, each with a semicolon behind it.
+    /// Returns the parameters of a change, each followed by a semicolon.
     fn parameters(self, to: Self) -> String {
         let mut text = String::new();
         let mut looks = self.looks;
@@ -99,7 +99,7 @@ impl Pen {
     }
 }
 
-/// Parameters of a colour; `base` is 30 for the foreground, 40 for the background.
+/// Appends the parameters of a colour; `base` is 30 for the foreground, 40 for the background.
 fn colour(colour: Color, base: u8, text: &mut String) {
     let named = |number: u8| match number {
         0..8 => base + number,

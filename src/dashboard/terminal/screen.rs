@@ -1,4 +1,4 @@
-//! The screen while the program has it: what turns it on, and what gives it back.
+//! The screen of the terminal: how it is taken, and how it is restored.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -8,42 +8,45 @@ use std::time::{Duration, Instant};
 
 use super::tty::{Tty, detach};
 
-/// Alternate screen, no cursor; pasted text is marked, so that it is not taken for keys. The
-/// pen is cleared first: the alternate screen gives back the pen that it found.
+/// Enters the alternate screen without a cursor, with bracketed paste so that pasted text is
+/// not taken for keys. The pen is reset first, because the alternate screen restores the pen
+/// that it found.
 const ENTER: &[u8] = b"\x1b[0m\x1b[?1049h\x1b[?25l\x1b[?2004h";
-/// Presses, wheel and drags of the mouse, in the form that has no limit of columns.
+/// Enables presses, wheel and drags of the mouse, in the encoding without a column limit.
 const MOUSE: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
-/// Everything back, and the end of a frame that was cut off.
+/// Undoes everything, and ends a synchronised update that was cut off.
 const LEAVE: &[u8] =
     b"\x1b[?2026l\x1b[?1006l\x1b[?1002l\x1b[?1000l\x1b[?2004l\x1b[0m\x1b[?25h\x1b[?1049l\x1b[0m";
 
-/// Longest wait for a terminal that takes nothing, on entering and on leaving it.
+/// Longest wait for a terminal that accepts no bytes, on entering and on leaving the screen.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// The screen that has to be given back if the program ends now.
+/// The screen that must be restored if the program ends now.
 static CURRENT: Mutex<Option<Arc<Screen>>> = Mutex::new(None);
 
-/// The terminal's screen, shared by the threads that write to it and those that may
-/// have to give it back.
+/// The screen of the terminal, shared by the thread that writes and the threads that may have
+/// to restore it.
 #[derive(Debug)]
 pub(super) struct Screen {
     pub(super) tty: Tty,
     mouse: bool,
-    /// Whether the screen is ours.
+    /// Whether the program has the screen.
     entered: AtomicBool,
-    /// Whether it was given back for good.
+    /// Whether the screen was restored for good.
     closed: AtomicBool,
     /// Held while a frame is written.
     writing: Mutex<()>,
-    /// Held while the screen is given back: who wants the same must not go on, and end the
-    /// program, before it is.
+    /// Held while the screen is restored, so that another thread that wants to restore it
+    /// cannot end the program before that is done.
     leaving: Mutex<()>,
-    /// Bytes of frames so far.
+    /// Bytes of frames written so far.
     written: AtomicU64,
 }
 
-/// Gives the terminal back, now and for good, whatever other threads are doing; if one is
-/// doing the same, returns when it is done. Does nothing if there is nothing to give back.
+/// Restores the terminal now and for good, whatever other threads are doing.
+///
+/// If another thread is restoring it, returns when that is done. Does nothing if there is
+/// nothing to restore.
 pub fn restore() {
     let current = || lock_within(&CURRENT, PATIENCE);
     let screen = current().and_then(|current| current.clone());
@@ -70,7 +73,8 @@ impl Screen {
         screen
     }
 
-    /// Takes the screen; again, if somebody else has written to it.
+    /// Takes the screen, even if the program already has it, because another program may have
+    /// written to it.
     pub(super) fn enter(&self) -> io::Result<()> {
         if self.is_closed() {
             return Err(io::ErrorKind::BrokenPipe.into());
@@ -85,32 +89,33 @@ impl Screen {
         Ok(())
     }
 
-    /// Gives the screen back. A terminal that is gone or stuck is no obstacle: what it
-    /// does not take within a moment is given up. Returns whether it took everything.
+    /// Restores the screen; returns whether the terminal accepted everything.
+    ///
+    /// A terminal that is gone or stuck is given up after a moment.
     pub(super) fn leave(&self) -> bool {
         let _leaving = lock_within(&self.leaving, 3 * PATIENCE);
         if !self.entered.swap(false, Ordering::SeqCst) {
             return true;
         }
-        // The frame that is being written is not wanted any more; its writer gives up within
-        // a slice of time. If it is this thread, which panicked, it never does.
+        // The writer gives up a frame in progress within a slice of time. If the writer is this
+        // thread, which has panicked, the lock is never released.
         let _writing = lock_within(&self.writing, PATIENCE);
         let taken = self.tty.write_within(LEAVE, PATIENCE);
         if self.mouse {
-            // What the mouse has said meanwhile is not for the shell.
+            // Pending mouse reports must not reach the shell.
             let _gone = self.tty.forget_input();
         }
         let _gone = self.tty.restore();
         taken.unwrap_or(false)
     }
 
-    /// The screen is somebody else's already: the shell has it, and its modes.
+    /// Records that the shell already has the screen and its modes.
     pub(super) fn lose(&self) {
         self.entered.store(false, Ordering::SeqCst);
     }
 
-    /// Gives the screen back, and there will be no other frame. A terminal that does not take
-    /// this will not take what is printed afterwards either, and must not hold it up.
+    /// Restores the screen for good. A terminal that does not accept this is detached, because
+    /// it would block later messages too.
     pub(super) fn close(&self) {
         self.closed.store(true, Ordering::SeqCst);
         if !self.leave() {
@@ -126,12 +131,12 @@ impl Screen {
         self.entered.load(Ordering::SeqCst)
     }
 
-    /// Bytes of frames written so far.
+    /// Returns the bytes of frames written so far.
     pub(super) fn written(&self) -> u64 {
         self.written.load(Ordering::Relaxed)
     }
 
-    /// Writes a frame, as long as the screen is ours.
+    /// Writes a frame, while the program has the screen.
     pub(super) fn write(&self, frame: &[u8]) -> io::Result<()> {
         let _writing = self.writing();
         let count = |bytes: usize| {
@@ -146,8 +151,8 @@ impl Screen {
     }
 }
 
-/// Waits for a lock, and gives up after a time: the thread that has it may be stuck, or be
-/// this one, which panicked.
+/// Waits for a lock up to a time, because its holder may be stuck, or be this thread, which has
+/// panicked.
 fn lock_within<T>(mutex: &Mutex<T>, time: Duration) -> Option<MutexGuard<'_, T>> {
     let begun = Instant::now();
     loop {

@@ -1,4 +1,4 @@
-//! The terminal as the operating system knows it.
+//! The terminal device of the operating system.
 
 use std::io;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -16,35 +16,35 @@ use rustix::termios::{
     tcsetattr, ttyname,
 };
 
-/// Longest wait for a terminal that takes nothing, before it is asked for again whether
+/// Longest wait for a terminal that accepts no bytes, before the writer checks again whether
 /// the bytes are still wanted.
 const SLICE: Duration = Duration::from_millis(20);
 
-/// A terminal, opened anew: not waiting for it is a property of this descriptor
-/// alone, and does not change that of the shell that started the program.
+/// A terminal with its own open file description, so that non-blocking mode does not affect the
+/// shell that started the program.
 #[derive(Debug)]
 pub(super) struct Tty {
     descriptor: OwnedFd,
-    /// The modes to return to; none while they are in force.
+    /// The modes to restore; `None` while they are in force.
     before: Mutex<Option<Termios>>,
 }
 
-/// Whether a dashboard can be shown: standard input and output are a terminal.
+/// Returns whether a dashboard can be shown: standard input and output are terminals.
 #[must_use]
 pub fn is_terminal() -> bool {
     isatty(stdin()) && isatty(stdout())
 }
 
-/// Whether any standard stream is a terminal, whose line can drop.
+/// Returns whether any standard stream is a terminal, whose line can drop.
 #[must_use]
 pub fn is_attached() -> bool {
     isatty(stdin()) || isatty(stdout()) || isatty(stderr())
 }
 
-/// Lets go of the terminal: what is read is empty, what is written is lost.
+/// Detaches from the terminal: standard streams become `/dev/null`.
 ///
 /// # Errors
-/// When there is no `/dev/null`.
+/// When `/dev/null` cannot be opened.
 pub fn detach() -> io::Result<()> {
     let null = open("/dev/null", OFlags::RDWR | OFlags::CLOEXEC, Mode::empty())?;
     dup2_stdin(&null)?;
@@ -54,13 +54,13 @@ pub fn detach() -> io::Result<()> {
 }
 
 impl Tty {
-    /// Opens the terminal of standard input, and makes it standard input, so that reading
-    /// does not wait either.
+    /// Opens the terminal of standard input and makes it the new standard input, so that
+    /// reading does not block either.
     pub(super) fn open() -> io::Result<Self> {
         let flags = OFlags::RDWR | OFlags::NONBLOCK | OFlags::NOCTTY | OFlags::CLOEXEC;
         let named = ttyname(stdin(), Vec::new())
             .and_then(|name| open(name.as_c_str(), flags, Mode::empty()));
-        // Seen from inside a container the name may lead nowhere.
+        // Inside a container the name may not exist.
         let descriptor = named.or_else(|_| open("/dev/tty", flags, Mode::empty()))?;
         dup2_stdin(&descriptor)?;
         Ok(Self {
@@ -75,20 +75,20 @@ impl Tty {
 
     pub(super) fn size(&self) -> Option<Size> {
         let size = tcgetwinsize(&self.descriptor).ok()?;
-        // A serial line knows no size and says 0 by 0.
+        // A serial line has no size and reports 0 by 0.
         match (size.ws_col, size.ws_row) {
             (0, _) | (_, 0) => Some(Size::new(80, 24)),
             (width, height) => Some(Size::new(width, height)),
         }
     }
 
-    /// Whether the program may read keys and draw: it is the shell's foreground job.
+    /// Returns whether the program is the foreground job, which may read keys and draw.
     pub(super) fn is_foreground(&self) -> bool {
-        // On a terminal that controls no job, everybody may.
+        // On a terminal without job control every program may.
         tcgetpgrp(&self.descriptor).map_or(true, |group| group == getpgrp())
     }
 
-    /// Every key reaches the program as it is pressed.
+    /// Enters raw mode: every key reaches the program as it is pressed.
     pub(super) fn make_raw(&self) -> io::Result<()> {
         let mut before = self.before();
         let now = tcgetattr(&self.descriptor)?;
@@ -97,7 +97,7 @@ impl Tty {
         Ok(tcsetattr(&self.descriptor, OptionalActions::Now, &raw)?)
     }
 
-    /// The terminal's modes are as they were before the first [`Tty::make_raw`].
+    /// Restores the modes from before the first [`Tty::make_raw`].
     pub(super) fn restore(&self) -> io::Result<()> {
         match self.before().take() {
             Some(modes) => Ok(tcsetattr(&self.descriptor, OptionalActions::Now, &modes)?),
@@ -105,7 +105,7 @@ impl Tty {
         }
     }
 
-    /// Drops what was typed and not read.
+    /// Discards unread input.
     pub(super) fn forget_input(&self) -> io::Result<()> {
         Ok(tcflush(&self.descriptor, QueueSelector::IFlush)?)
     }
@@ -114,7 +114,7 @@ impl Tty {
         self.before.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes as long as the bytes are wanted. Returns whether all of them were written.
+    /// Writes while the bytes are wanted; returns whether all of them were written.
     pub(super) fn write(
         &self,
         mut bytes: &[u8],
@@ -139,7 +139,7 @@ impl Tty {
         Ok(true)
     }
 
-    /// Writes what is short, and gives up after a time.
+    /// Writes a short sequence, and gives up after a time.
     pub(super) fn write_within(&self, bytes: &[u8], time: Duration) -> io::Result<bool> {
         let begun = Instant::now();
         self.write(bytes, || begun.elapsed() < time, |_| {})
@@ -156,15 +156,17 @@ impl Tty {
             Err(error) => return Err(error.into()),
         }
         let gone = PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL;
-        match descriptors[0].revents().intersects(gone) {
-            true => Err(io::ErrorKind::BrokenPipe.into()),
-            false => Ok(()),
+        if descriptors[0].revents().intersects(gone) {
+            Err(io::ErrorKind::BrokenPipe.into())
+        } else {
+            Ok(())
         }
     }
 }
 
-/// Whether a shell waits that could continue this program after it has stopped itself. A
-/// program that was started as the terminal's only one would stay stopped for ever.
+/// Returns whether a shell could continue this program after it has stopped itself.
+///
+/// A program that is the only one of its terminal would stay stopped for ever.
 pub(super) fn can_be_continued() -> bool {
     let leads_session = getsid(None).is_ok_and(|session| session == getpgrp());
     let orphan = getppid().is_none_or(|parent| parent.is_init());

@@ -1,4 +1,4 @@
-//! The way of frames to the terminal: through a thread of its own, one at a time.
+//! A thread that writes frames to the terminal, one at a time.
 
 use std::io;
 use std::sync::Arc;
@@ -9,8 +9,10 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::screen::Screen;
 
-/// Takes a frame only when the one before has gone. A terminal that is slow or stuck thus
-/// costs frames, and never anybody's time: what changes meanwhile is in the next frame.
+/// The writer of frames, which accepts a frame only when the previous one has been written.
+///
+/// A slow or stuck terminal thus costs frames and never blocks the session; the next frame
+/// contains all changes in between.
 #[derive(Debug)]
 pub(super) struct Writer {
     frames: Sender<Vec<u8>>,
@@ -18,7 +20,8 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Also returns who is told that the writer is free again, or that the terminal is gone.
+    /// Starts the writer; the receiver is notified when the writer is free again, or gets an
+    /// error when the terminal is gone.
     pub(super) fn start(screen: Arc<Screen>) -> io::Result<(Self, Receiver<io::Result<()>>)> {
         let (frames, to_write) = bounded::<Vec<u8>>(1);
         let (sender, done) = bounded(1);
@@ -30,7 +33,7 @@ impl Writer {
                 for frame in to_write {
                     let written = screen.write(&frame);
                     freed.store(true, Ordering::SeqCst);
-                    // Nobody has taken the last notice: they will look anyway.
+                    // An unread notification is enough for the session to check.
                     let _told = sender.try_send(written);
                 }
             })?;
@@ -41,7 +44,7 @@ impl Writer {
         self.free.load(Ordering::SeqCst)
     }
 
-    /// Sends a frame on its way. To be called when the writer is free.
+    /// Sends a frame; call only when the writer is free.
     pub(super) fn send(&self, frame: Vec<u8>) {
         self.free.store(false, Ordering::SeqCst);
         if self.frames.try_send(frame).is_err() {

@@ -3,9 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::dashboard::context::Clicked;
-use crate::dashboard::context::Effect;
-use crate::dashboard::context::ViewContext;
+use crate::dashboard::context::{Clicked, Effect, ViewContext};
 use crate::dashboard::keys::Action;
 use crate::dashboard::view_id::ViewId;
 
