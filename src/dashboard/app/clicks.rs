@@ -4,8 +4,7 @@ use ratatui::layout::{Position, Rect};
 
 use super::state::App;
 use crate::dashboard::chrome::overlay::Overlay;
-use crate::dashboard::context::Effect;
-use crate::dashboard::context::{Clicked, Mouse};
+use crate::dashboard::context::{Clicked, Effect, Mouse};
 use crate::dashboard::keys::Action;
 use crate::dashboard::panel::{body, inside};
 use crate::dashboard::view_id::ViewId;

@@ -7,6 +7,8 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::style::{Color, Modifier};
 use thiserror::Error;
 
+use crate::dashboard::look::palette_index;
+
 /// The format of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameFormat {
@@ -105,37 +107,11 @@ fn codes(cell: &Cell) -> String {
                 let _ = write!(codes, ";{layer};2;{r};{g};{b}");
             }
             other => {
-                let _ = write!(codes, ";{layer};5;{}", index(other));
+                let _ = write!(codes, ";{layer};5;{}", palette_index(other));
             }
         }
     }
     codes
-}
-
-/// Returns the index of a colour in the 256-colour palette.
-fn index(colour: Color) -> u8 {
-    const NAMED: [Color; 16] = [
-        Color::Black,
-        Color::Red,
-        Color::Green,
-        Color::Yellow,
-        Color::Blue,
-        Color::Magenta,
-        Color::Cyan,
-        Color::Gray,
-        Color::DarkGray,
-        Color::LightRed,
-        Color::LightGreen,
-        Color::LightYellow,
-        Color::LightBlue,
-        Color::LightMagenta,
-        Color::LightCyan,
-        Color::White,
-    ];
-    match colour {
-        Color::Indexed(index) => index,
-        other => NAMED.iter().position(|named| *named == other).unwrap_or(0) as u8,
-    }
 }
 
 /// Returns a palette colour as red, green, blue: xterm's 16 colours, the 6x6x6 cube, 24 greys.
@@ -161,7 +137,7 @@ fn rgb(colour: Color, reset: [u8; 3]) -> [u8; 3] {
     match colour {
         Color::Reset => reset,
         Color::Rgb(r, g, b) => [r, g, b],
-        other => match index(other) {
+        other => match palette_index(other) {
             basic @ 0..16 => BASIC[usize::from(basic)],
             cube @ 16..232 => {
                 let level = |n: u8| if n == 0 { 0 } else { 55 + 40 * n };

@@ -6,13 +6,12 @@ use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::export;
+use super::export::{FrameFormat, render};
 use super::steering::{Steered, steer};
 use crate::dashboard::chrome::header;
 use crate::dashboard::chrome::hints::useful;
 use crate::dashboard::chrome::overlay::{self, Overlay};
-use crate::dashboard::context::{Chosen, ViewContext};
-use crate::dashboard::context::{Effect, Input};
+use crate::dashboard::context::{Chosen, Effect, Export, Input, ViewContext};
 use crate::dashboard::keys::{Action, Key, Scope};
 use crate::dashboard::look::Paint;
 use crate::dashboard::panel::{SMALLEST, body, panel, too_small};
@@ -345,31 +344,23 @@ impl App {
         let (extension, contents) = match action {
             Action::ExportDot => ("dot", view.and_then(|view| view.dot(&self.context))),
             Action::ExportCsv => ("csv", view.and_then(|view| view.csv(&self.context))),
-            Action::ExportText => ("txt", Some(self.rendered(export::FrameFormat::Text))),
-            Action::ExportAnsi => ("ansi", Some(self.rendered(export::FrameFormat::Ansi))),
-            Action::ExportSvg => ("svg", Some(self.rendered(export::FrameFormat::Svg))),
+            Action::ExportText => ("txt", Some(self.rendered(FrameFormat::Text))),
+            Action::ExportAnsi => ("ansi", Some(self.rendered(FrameFormat::Ansi))),
+            Action::ExportSvg => ("svg", Some(self.rendered(FrameFormat::Svg))),
             _ => return Vec::new(),
         };
-        let what = match action {
+        let of = match action {
             Action::ExportDot | Action::ExportCsv => active,
             _ => self.view,
         };
-        match contents {
-            Some(contents) => {
-                let generation = self.context.shown().map_or(0, |record| record.generation);
-                let name = format!("{}-generation{generation}.{extension}", what.name());
-                vec![Effect::Export(crate::dashboard::context::Export {
-                    name,
-                    contents,
-                })]
-            }
-            None => {
-                let title = what.title();
-                self.context
-                    .show_message(format!("{title} has no {extension} export"));
-                Vec::new()
-            }
-        }
+        let Some(contents) = contents else {
+            let text = format!("{} has no {extension} export", of.title());
+            self.context.show_message(text);
+            return Vec::new();
+        };
+        let generation = self.context.shown().map_or(0, |record| record.generation);
+        let name = format!("{}-generation{generation}.{extension}", of.name());
+        vec![Effect::Export(Export { name, contents })]
     }
 
     /// Returns a frame of the current terminal size.
@@ -381,8 +372,8 @@ impl App {
         buffer
     }
 
-    fn rendered(&self, format: export::FrameFormat) -> String {
-        export::render(&self.frame(), format)
+    fn rendered(&self, format: FrameFormat) -> String {
+        render(&self.frame(), format)
     }
 
     /// Draws a frame.

@@ -1,8 +1,7 @@
 //! Actions that steer the run.
 
 use crate::dashboard::chrome::overlay::Question;
-use crate::dashboard::context::Effect;
-use crate::dashboard::context::{Activity, Mode, ViewContext};
+use crate::dashboard::context::{Activity, Effect, Mode, ViewContext};
 use crate::dashboard::keys::Action;
 
 /// The outcome of an action.

@@ -1,11 +1,10 @@
 //! Windows that open over a view: help, the export menu, questions.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Constraint, Rect};
 use ratatui::widgets::{Clear, Widget};
 
-use crate::dashboard::context::Effect;
-use crate::dashboard::context::ViewContext;
+use crate::dashboard::context::{Effect, ViewContext};
 use crate::dashboard::keys::{Action, KeyMap, Scope};
 use crate::dashboard::look::lines::mark_more;
 use crate::dashboard::look::{Look, Paint, fitted, put, width, wrapped};
@@ -73,30 +72,23 @@ pub(in crate::dashboard) fn draw(
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    match open {
+    let (titles, lines, scroll) = match open {
         Overlay::Help { scroll } => {
             let lines = help_lines(context, view, help_texts);
-            let titles = ("Help", view.title());
-            window(&context.look, titles, &lines, *scroll, area, buffer);
+            (("Help", view.title()), lines, *scroll)
         }
         Overlay::Export => {
             let lines = of_scope(context, Scope::ExportMenu);
-            window(
-                &context.look,
-                ("Export", "any other key cancels"),
-                &lines,
-                0,
-                area,
-                buffer,
-            );
+            (("Export", "any other key cancels"), lines, 0)
         }
         Overlay::Question(question) => {
-            let mut lines = vec![plain(question.text())];
             let answers = question.answers().iter();
-            lines.extend(answers.map(|&action| line(&context.keys, action)));
-            window(&context.look, ("Question", ""), &lines, 0, area, buffer);
+            let answers = answers.map(|&action| line(&context.keys, action));
+            let lines = [plain(question.text())].into_iter().chain(answers);
+            (("Question", ""), lines.collect(), 0)
         }
-    }
+    };
+    window(&context.look, titles, &lines, scroll, area, buffer);
 }
 
 /// Returns a line of text without keys.
@@ -187,20 +179,13 @@ pub(in crate::dashboard) fn window(
     area: Rect,
     buffer: &mut Buffer,
 ) {
-    let keys = lines
-        .iter()
-        .map(|(keys, ..)| width(keys))
-        .max()
-        .unwrap_or(0);
-    let texts = lines
-        .iter()
-        .map(|(_, text, _)| width(text))
-        .max()
-        .unwrap_or(0);
+    let keys = lines.iter().map(|(keys, ..)| width(keys)).max();
+    let texts = lines.iter().map(|(_, text, _)| width(text)).max();
+    let (keys, texts) = (keys.unwrap_or(0), texts.unwrap_or(0));
     let wanted = |columns: usize| u16::try_from(columns).unwrap_or(u16::MAX);
     let place = area.centered(
-        ratatui::layout::Constraint::Length(wanted(keys + texts + 6).min(area.width)),
-        ratatui::layout::Constraint::Length(wanted(lines.len() + 2).min(area.height)),
+        Constraint::Length(wanted(keys + texts + 6).min(area.width)),
+        Constraint::Length(wanted(lines.len() + 2).min(area.height)),
     );
     Clear.render(place, buffer);
     buffer.set_style(place, look.style(Paint::Text));

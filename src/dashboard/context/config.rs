@@ -186,17 +186,10 @@ impl File {
             (at.unwrap_or(0), Problem::Collision(collision))
         })?;
         if let Some(theme) = &self.theme {
-            let known = config
-                .themes
-                .iter()
-                .any(|known| known.name == *theme.as_ref());
-            if !known {
-                let names: Vec<_> = config
-                    .themes
-                    .iter()
-                    .map(|theme| theme.name.clone())
-                    .collect();
-                let (found, allowed) = (theme.as_ref().clone(), names.join(", "));
+            let names = config.themes.iter().map(|known| known.name.as_str());
+            if !names.clone().any(|name| name == theme.as_ref()) {
+                let allowed = names.collect::<Vec<_>>().join(", ");
+                let found = theme.as_ref().clone();
                 return Err((theme.span().start, Problem::Theme { found, allowed }));
             }
             config.theme.clone_from(theme.as_ref());

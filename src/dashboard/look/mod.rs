@@ -13,7 +13,7 @@ pub use chart::{Chart, Curve, axis_end, sparkline};
 pub use paint::Paint;
 pub use signs::Signs;
 pub use text::{fitted, fitted_end, fitted_parts, one_line, put, shortened, width, wrapped};
-pub use theme::{StyleError, Theme};
+pub use theme::{StyleError, Theme, palette_index};
 
 use ratatui::style::Style;
 

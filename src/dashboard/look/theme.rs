@@ -136,6 +136,33 @@ impl Theme {
     }
 }
 
+/// Returns the index of a colour in the 256-colour palette; 0 for a colour outside of it.
+#[must_use]
+pub fn palette_index(colour: Color) -> u8 {
+    const NAMED: [Color; 16] = [
+        Color::Black,
+        Color::Red,
+        Color::Green,
+        Color::Yellow,
+        Color::Blue,
+        Color::Magenta,
+        Color::Cyan,
+        Color::Gray,
+        Color::DarkGray,
+        Color::LightRed,
+        Color::LightGreen,
+        Color::LightYellow,
+        Color::LightBlue,
+        Color::LightMagenta,
+        Color::LightCyan,
+        Color::White,
+    ];
+    match colour {
+        Color::Indexed(index) => index,
+        other => NAMED.iter().position(|named| *named == other).unwrap_or(0) as u8,
+    }
+}
+
 fn read(text: &str) -> Result<Style, StyleError> {
     let error = || StyleError {
         found: text.to_owned(),

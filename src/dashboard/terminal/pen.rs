@@ -5,6 +5,8 @@ use std::fmt::Write;
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
 
+use crate::dashboard::look::palette_index;
+
 /// Attributes that are visible on a blank.
 const ON_BLANKS: Modifier = Modifier::REVERSED
     .union(Modifier::UNDERLINED)
@@ -101,28 +103,8 @@ impl Pen {
 
 /// Appends the parameters of a colour; `base` is 30 for the foreground, 40 for the background.
 fn colour(colour: Color, base: u8, text: &mut String) {
-    let named = |number: u8| match number {
-        0..8 => base + number,
-        _ => base + 60 + number - 8,
-    };
     let parameter = match colour {
         Color::Reset => base + 9,
-        Color::Black => named(0),
-        Color::Red => named(1),
-        Color::Green => named(2),
-        Color::Yellow => named(3),
-        Color::Blue => named(4),
-        Color::Magenta => named(5),
-        Color::Cyan => named(6),
-        Color::Gray => named(7),
-        Color::DarkGray => named(8),
-        Color::LightRed => named(9),
-        Color::LightGreen => named(10),
-        Color::LightYellow => named(11),
-        Color::LightBlue => named(12),
-        Color::LightMagenta => named(13),
-        Color::LightCyan => named(14),
-        Color::White => named(15),
         Color::Indexed(number) => {
             let _infallible = write!(text, "{};5;{number};", base + 8);
             return;
@@ -131,6 +113,10 @@ fn colour(colour: Color, base: u8, text: &mut String) {
             let _infallible = write!(text, "{};2;{red};{green};{blue};", base + 8);
             return;
         }
+        named => match palette_index(named) {
+            dark @ 0..8 => base + dark,
+            bright => base + 60 + bright - 8,
+        },
     };
     let _infallible = write!(text, "{parameter};");
 }
