@@ -80,7 +80,10 @@ impl View for Fitness {
         draw_legend(context, shown, legend, buffer);
         if two {
             difference_chart.draw(look, below, buffer);
-            let text = format!("structural difference to best {:.1}", shown.mean_difference);
+            let mut text = format!("structural difference to best {:.1}", shown.mean_difference);
+            if width(&text) >= area.width.into() {
+                text = text.replace("structural ", "");
+            }
             let style = look.style(Paint::Series1);
             put(buffer, difference, (1, 0), &text, style);
         }

@@ -27,7 +27,7 @@ pub(super) fn lines(
 ) -> Vec<Line<'static>> {
     let look = &context.look;
     let known = lineage.ancestors.len().saturating_sub(1);
-    let note = format!("{known} ancestors; the line of descent of the root:");
+    let note = format!("{known} ancestors; line of descent:");
     let mut lines = vec![line(look, note, Paint::Dim)];
     let individuals = context.shown().map(|record| &record.individuals);
     let trials = individuals
