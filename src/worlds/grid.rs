@@ -6,8 +6,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use rand::RngExt;
 
+use super::builder::CatalogueBuilder;
 use super::scene::{Move, Reading, Scale, Snapshot, Sweep};
-use super::{Probe, StateType, SubtaskId};
+use super::{MapId, Probe, StateType, StateTypes, SubtaskId};
 use crate::random::Stream;
 
 /// Radius in cells of an agent that is in one.
@@ -24,6 +25,12 @@ pub(super) enum Direction {
 
 impl Direction {
     pub(super) const ALL: [Self; 4] = [Self::Up, Self::Down, Self::Right, Self::Left];
+
+    /// The direction of a move, one of the four in the order of [`Self::ALL`].
+    pub(super) fn of(moved: SubtaskId, moves: [SubtaskId; 4]) -> Self {
+        let place = moves.iter().position(|&known| known == moved);
+        Self::ALL[place.unwrap_or(0)]
+    }
 
     /// The other three.
     pub(super) fn others(self) -> [Self; 3] {
@@ -148,6 +155,22 @@ pub(super) fn outer_walls(cells: Cells) -> [[[f64; 2]; 2]; 4] {
     let [width, height] = cells.extent();
     let corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
     std::array::from_fn(|i| [corners[i], corners[(i + 1) % 4]])
+}
+
+/// Describes the primitive subtasks that walk up, down, right and left.
+pub(super) fn add_moves(
+    builder: &mut CatalogueBuilder,
+    moves: [SubtaskId; 4],
+    map: MapId,
+    active: impl Into<StateTypes>,
+) {
+    let active = active.into();
+    for (id, to) in moves
+        .into_iter()
+        .zip(["up", "down", "to the right", "to the left"])
+    {
+        builder.primitive(id, &format!("walk one cell {to}"), map, active);
+    }
 }
 
 /// The subtasks that move an agent east, north, west, south.

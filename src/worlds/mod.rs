@@ -7,6 +7,8 @@
 //! run time.
 
 #[macro_use]
+mod builder;
+#[macro_use]
 mod settings;
 mod catalogue;
 mod grid;

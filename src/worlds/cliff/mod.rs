@@ -1,42 +1,26 @@
-//! The cliff walk (Thesis 2.1.3, Figures 2.2 and 2.3).
-//!
-//! A grid of 12 by 4 cells. The start is in its lower left corner, the goal in its lower
-//! right one, and the cells between them are a cliff.
-//!
-//! - **Actions.** Up, Down, Right, Left move by one cell; at the edge the agent stays.
-//! - **Start.** The start, or any cell but the goal: see
-//!   [`CliffBegin`].
-//! - **Rewards.** -1 for every step. A step into the cliff brings -100 and leads to the
-//!   start; the trial goes on.
-//! - **End.** The goal is reached.
-//!
-//! Hierarchies are made of the four actions and of three composite subtasks: Leave takes
-//! the agent from the start to the cells above the cliff, Cross along these to the last
-//! column, Descend down there to the goal. The thesis has no hierarchy for the cliff.
-//! With the thesis's pseudo-reward of -1 its subtasks would rather fail than walk far: to
-//! step back to the start costs Cross 2, its goal up to 11. The shipped scenario makes
-//! failing dear.
+//! The cliff walk (Thesis 2.1.3, Figures 2.2 and 2.3). Its specification is on the page of
+//! [the worlds](super).
 
 mod catalogue;
-mod mdp;
 mod scene;
 mod settings;
 
 use rand::RngExt;
 
-use self::catalogue::{ABOVE, AT_GOAL, AT_START, DOWN, INPUTS, LAST, LEFT, RIGHT};
+use self::catalogue::{ABOVE, ACTIONS, AT_GOAL, AT_START, CELL, INPUTS, LAST, POSITION};
 pub use self::settings::{CliffBegin, CliffSettings};
 use super::grid::{Cells, Direction, any_of};
-use super::mdp::Mdp;
+use super::mdp::{Mdp, MdpState, Outcome};
 use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::{Check, Problem};
-/// What the agent perceives: the number of its cell, and where this is in [0, 1] from the
-/// lower left.
+
+/// What the agent perceives: the number of its cell, and the cell's position along x and y in
+/// [0, 1], from the lower left.
 pub type Percept = [f32; INPUTS];
 
-/// The cliff world. Its state is the cell that the agent is in, counted row by row from
-/// the upper left.
+/// The cliff world. Its state is the number of the agent's cell, counted row by row from the
+/// upper left.
 #[derive(Clone, Debug)]
 pub struct CliffWorld {
     catalogue: Catalogue,
@@ -45,10 +29,10 @@ pub struct CliffWorld {
 }
 
 impl CliffWorld {
-    /// The world of settings that obey the rules.
+    /// Makes the world of settings that obey the rules.
     ///
     /// # Errors
-    /// When the grid is too small to have a cliff.
+    /// Fails if the grid is too small to have a cliff.
     pub fn new(settings: &CliffSettings) -> Result<Self, Problem> {
         let cells = Cells {
             columns: settings.width,
@@ -81,25 +65,46 @@ impl CliffWorld {
         cell > self.start() && cell < self.goal()
     }
 
-    /// The cells in which trials begin.
-    fn beginnings(&self) -> std::ops::RangeInclusive<usize> {
+    /// Cells in which trials start.
+    fn starts(&self) -> std::ops::RangeInclusive<usize> {
         match self.settings.begin {
             CliffBegin::Start => self.start()..=self.start(),
             CliffBegin::Anywhere => 0..=self.start(),
         }
     }
 
+    /// Returns the cell that a move leads to, and its reward.
     fn act(&self, cell: usize, primitive: SubtaskId) -> (usize, f64) {
-        let direction = match primitive {
-            DOWN => Direction::Down,
-            RIGHT => Direction::Right,
-            LEFT => Direction::Left,
-            _ => Direction::Up,
-        };
+        let direction = Direction::of(primitive, ACTIONS);
         let to = self.cells.neighbour(cell, direction).unwrap_or(cell);
-        match self.is_cliff(to) {
-            true => (self.start(), self.settings.fall_reward),
-            false => (to, self.settings.step_reward),
+        if self.is_cliff(to) {
+            (self.start(), self.settings.fall_reward)
+        } else {
+            (to, self.settings.step_reward)
+        }
+    }
+
+    fn mdp_state(&self, cell: usize) -> MdpState<Percept> {
+        let state_type = self.state_type(&cell);
+        let outcome = |primitive| {
+            let (next, reward) = self.act(cell, primitive);
+            let probability = 1.0;
+            vec![Outcome {
+                probability,
+                reward,
+                next,
+            }]
+        };
+        let starts = self.starts();
+        let share = 1.0 / (starts.end() - starts.start() + 1) as f64;
+        MdpState {
+            state_type,
+            percept: self.percept(&cell),
+            start: if starts.contains(&cell) { share } else { 0.0 },
+            outcomes: match state_type {
+                AT_GOAL => Vec::new(),
+                _ => ACTIONS.map(outcome).into(),
+            },
         }
     }
 }
@@ -130,7 +135,7 @@ impl World for CliffWorld {
     }
 
     fn draw_start(&self, rng: &mut Stream) -> usize {
-        rng.random_range(self.beginnings())
+        rng.random_range(self.starts())
     }
 
     fn begin(&self, start: &usize, _: &mut Stream) -> usize {
@@ -173,6 +178,13 @@ impl World for CliffWorld {
     }
 
     fn mdp(&self) -> Option<Mdp<Percept>> {
-        Some(self.as_mdp())
+        let states =
+            (0..self.count()).map(|cell| (!self.is_cliff(cell)).then(|| self.mdp_state(cell)));
+        Some(Mdp {
+            table: CELL,
+            gaussian: Some(POSITION),
+            actions: ACTIONS.map(|primitive| (primitive, 0)).into(),
+            states: states.collect(),
+        })
     }
 }

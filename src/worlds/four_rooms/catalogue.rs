@@ -1,28 +1,52 @@
 //! The subtasks of four rooms: the ways from a room to its hallways, and to the goal.
 
 use super::house::{CELLS, Place};
+use crate::worlds::builder::CatalogueBuilder;
+use crate::worlds::grid::add_moves;
 use crate::worlds::{
-    Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,
-    StateTypes, Subtask, SubtaskId,
+    Blocks, Catalogue, FeatureKind, Index, MapId, StateType, StateTypes, SubtaskId,
 };
 
-/// At the goal.
-pub const AT_GOAL: StateType = StateType(8);
+numbered! {
+    STATE_TYPES: StateType {
+        _ = "in the north-western room",
+        _ = "in the north-eastern room",
+        _ = "in the south-western room",
+        _ = "in the south-eastern room",
+        _ = "in the northern hallway",
+        _ = "in the western hallway",
+        _ = "in the eastern hallway",
+        _ = "in the southern hallway",
+        AT_GOAL = "at the goal",
+    }
+}
 
-/// The primitive subtask Up.
-pub const UP: SubtaskId = SubtaskId(10);
-/// The primitive subtask Down.
-pub const DOWN: SubtaskId = SubtaskId(11);
-/// The primitive subtask Right.
-pub const RIGHT: SubtaskId = SubtaskId(12);
-/// The primitive subtask Left.
-pub const LEFT: SubtaskId = SubtaskId(13);
+numbered! {
+    SUBTASKS: SubtaskId {
+        ROOT = "Root",
+        _ = "NorthWestToNorth",
+        _ = "NorthWestToWest",
+        _ = "NorthEastToNorth",
+        _ = "NorthEastToEast",
+        _ = "SouthWestToWest",
+        _ = "SouthWestToSouth",
+        _ = "SouthEastToEast",
+        _ = "SouthEastToSouth",
+        TO_GOAL = "ToGoal",
+        UP = "Up",
+        DOWN = "Down",
+        RIGHT = "Right",
+        LEFT = "Left",
+    }
+}
+
+numbered! { MAPS: MapId { CELL = "cell", } }
+
+/// The primitive subtasks.
+pub(super) const ACTIONS: [SubtaskId; 4] = [UP, DOWN, RIGHT, LEFT];
 
 /// Number of inputs: the cell.
 pub(super) const INPUTS: usize = 1;
-
-/// The cell.
-pub(super) const CELL: MapId = MapId(0);
 
 /// Every way, with every action.
 pub(super) const HAND_MADE: &str = "(Root (NorthWestToNorth Up Down Right Left) \
@@ -31,88 +55,34 @@ pub(super) const HAND_MADE: &str = "(Root (NorthWestToNorth Up Down Right Left) 
      (SouthWestToSouth Up Down Right Left) (SouthEastToEast Up Down Right Left) \
      (SouthEastToSouth Up Down Right Left) (ToGoal Up Down Right Left))";
 
-/// The ways from a room to one of its hallways.
-const WAYS: [(&str, &str, Place, Place); 8] = {
-    use Place::{East, North, NorthEast, NorthWest, South, SouthEast, SouthWest, West};
-    [
-        (
-            "NorthWestToNorth",
-            "walk from the north-western room to the northern hallway",
-            NorthWest,
-            North,
-        ),
-        (
-            "NorthWestToWest",
-            "walk from the north-western room to the western hallway",
-            NorthWest,
-            West,
-        ),
-        (
-            "NorthEastToNorth",
-            "walk from the north-eastern room to the northern hallway",
-            NorthEast,
-            North,
-        ),
-        (
-            "NorthEastToEast",
-            "walk from the north-eastern room to the eastern hallway",
-            NorthEast,
-            East,
-        ),
-        (
-            "SouthWestToWest",
-            "walk from the south-western room to the western hallway",
-            SouthWest,
-            West,
-        ),
-        (
-            "SouthWestToSouth",
-            "walk from the south-western room to the southern hallway",
-            SouthWest,
-            South,
-        ),
-        (
-            "SouthEastToEast",
-            "walk from the south-eastern room to the eastern hallway",
-            SouthEast,
-            East,
-        ),
-        (
-            "SouthEastToSouth",
-            "walk from the south-eastern room to the southern hallway",
-            SouthEast,
-            South,
-        ),
-    ]
-};
-
-/// The catalogue of a house with its goal in the place given: if that is a hallway, whose
-/// only cell the goal is, nobody is ever in a state of its type.
+/// The catalogue of a house whose goal lies in the given place. If that is a hallway, the goal
+/// is its only cell, and no state has the hallway's type.
 pub(super) fn catalogue(goal: Place) -> Catalogue {
-    Catalogue {
-        state_types: [
-            "in the north-western room",
-            "in the north-eastern room",
-            "in the south-western room",
-            "in the south-eastern room",
-            "in the northern hallway",
-            "in the western hallway",
-            "in the eastern hallway",
-            "in the southern hallway",
-        ]
-        .map(|description| StateTypeInfo {
-            description: String::from(description),
-        })
-        .into(),
-        subtasks: composites(goal).chain(primitives()).collect(),
-        maps: vec![FeatureMap {
-            name: String::from("cell"),
-            kind: FeatureKind::Table(vec![Index {
-                input: 0,
-                values: CELLS,
-            }]),
-        }],
+    let mut builder = CatalogueBuilder::new(Blocks::One, STATE_TYPES, SUBTASKS, MAPS);
+    let all = types(Place::ALL);
+    builder.composite(ROOT, "walk to the goal", CELL, all, [AT_GOAL], 0);
+    let rooms = Place::ALL.into_iter().take(4);
+    let ways = rooms.flat_map(|room| room.neighbours().map(|hallway| (room, hallway)));
+    for (id, (room, hallway)) in (1..).map(SubtaskId).zip(ways) {
+        let [from, to] = [room, hallway].map(|place| STATE_TYPES[place as usize]);
+        let [from, to] = [from, to].map(|place| place.trim_start_matches("in "));
+        let others = room.neighbours().into_iter().filter(|&own| own != hallway);
+        let reached = if hallway == goal {
+            AT_GOAL
+        } else {
+            hallway.state_type()
+        };
+        let active = types(others.chain([room]));
+        let purpose = format!("walk from {from} to {to}");
+        builder.composite(id, &purpose, CELL, active, [reached], 2);
     }
+    let around = types(goal.neighbours().into_iter().chain([goal]));
+    let last = "walk to the goal from around it";
+    builder.composite(TO_GOAL, last, CELL, around, [AT_GOAL], 2);
+    add_moves(&mut builder, ACTIONS, CELL, all);
+    let values = CELLS;
+    builder.map(CELL, FeatureKind::Table(vec![Index { input: 0, values }]));
+    builder.finish()
 }
 
 fn types(places: impl IntoIterator<Item = Place>) -> StateTypes {
@@ -120,62 +90,16 @@ fn types(places: impl IntoIterator<Item = Place>) -> StateTypes {
     StateTypes::of(&types.collect::<Vec<_>>())
 }
 
-fn composites(goal: Place) -> impl Iterator<Item = Subtask> {
-    let composite = |name, purpose, active, goal, weight| Subtask {
-        name: String::from(name),
-        purpose: String::from(purpose),
-        active,
-        map: CELL,
-        kind: Kind::Composite {
-            goal,
-            weight,
-            blocks: Blocks::One,
-            abstractions: Vec::new(),
-        },
-    };
-    let end = StateTypes::of(&[AT_GOAL]);
-    let ways = WAYS.into_iter().map(move |(name, purpose, room, hallway)| {
-        let others = room.neighbours().into_iter().filter(|&own| own != hallway);
-        let reached = match hallway == goal {
-            true => end,
-            false => types([hallway]),
-        };
-        composite(name, purpose, types(others.chain([room])), reached, 2)
-    });
-    let around = types(goal.neighbours().into_iter().chain([goal]));
-    let root = composite("Root", "walk to the goal", types(Place::ALL), end, 0);
-    let last = composite("ToGoal", "walk to the goal from around it", around, end, 2);
-    std::iter::once(root).chain(ways).chain([last])
-}
-
-fn primitives() -> [Subtask; 4] {
-    let primitive = |name: &str, purpose| Subtask {
-        name: String::from(name),
-        purpose: String::from(purpose),
-        active: types(Place::ALL),
-        map: CELL,
-        kind: Kind::Primitive {
-            actions: vec![name.to_lowercase()],
-        },
-    };
-    [
-        primitive("Up", "walk one cell up"),
-        primitive("Down", "walk one cell down"),
-        primitive("Right", "walk one cell to the right"),
-        primitive("Left", "walk one cell to the left"),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn numbers_of_subtasks_are_those_of_their_names() {
+    fn every_way_has_the_name_of_its_two_places() {
         let catalogue = catalogue(Place::East);
-        for (name, id) in [("Up", UP), ("Down", DOWN), ("Right", RIGHT), ("Left", LEFT)] {
-            assert_eq!(catalogue.find(name), Some(id));
-        }
+        let east = catalogue.find("SouthEastToEast").unwrap();
+        let purpose = "walk from the south-eastern room to the eastern hallway";
+        assert_eq!(catalogue.subtask(east).purpose, purpose);
         assert_eq!(catalogue.terminal(), AT_GOAL);
     }
 

@@ -1,41 +1,59 @@
-//! Four rooms (Sutton, Precup and Singh 1999, *Between MDPs and semi-MDPs*, section 3).
-//!
-//! A house of four rooms with a hallway between each two neighbouring ones: 104 cells.
-//!
-//! - **Actions.** Up, Down, Right, Left move by one cell, with probability 1/3 into one of
-//!   the three other directions, all alike. Where a wall is the agent stays.
-//! - **Start.** Any cell but the goal, all alike.
-//! - **Rewards.** -1 for every step. The paper has 1 for reaching the goal, 0 for the
-//!   others, and makes the agent hurry by discounting; but a subtask of MAXQ, whose
-//!   pseudo-reward is 0 in its goal, would then have no reason to.
-//! - **End.** The goal is reached: a hallway, or any other cell.
-//!
-//! The eight ways from a room to one of its hallways, which the paper has as options, are
-//! composite subtasks here: `NorthWestToNorth` is active in the room in the north-west and
-//! in its other hallway, and its goal is the hallway in the north. `ToGoal` is active in
-//! what lies around the goal.
+//! Four rooms (Sutton, Precup and Singh 1999, *Between MDPs and semi-MDPs*, section 3). Its
+//! specification is on the page of [the worlds](super).
 
 mod catalogue;
 mod house;
-mod mdp;
 mod scene;
-mod settings;
 
 use rand::RngExt;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use self::catalogue::{AT_GOAL, DOWN, INPUTS, LEFT, RIGHT};
+use self::catalogue::{ACTIONS, AT_GOAL, CELL, INPUTS};
 use self::house::{CELLS, House};
-pub use self::settings::FourRoomsSettings;
 use super::grid::{Direction, any_of};
-use super::mdp::Mdp;
+use super::mdp::{Mdp, MdpState, Outcome};
 use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::{Check, Problem};
 
+/// Probability of a slip, Sutton, Precup and Singh 1999, section 3.
+const SLIP: f64 = 1.0 / 3.0;
+/// A cell of the south-eastern room that is no subtask's goal but the last one's.
+const GOAL_CELL: [usize; 2] = [8, 8];
+/// Reward of every step: see the module's description.
+const STEP_REWARD: f64 = -1.0;
+
+/// A house of four rooms with hallways between them, and a goal somewhere in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct FourRoomsSettings {
+    /// Column and row of the goal, from 0 at the upper left, within the outer walls.
+    pub goal_cell: [usize; 2],
+    /// Probability with which a move goes into one of the three other directions, a third
+    /// of it into each.
+    pub slip: f64,
+    /// Reward of every step that does not reach the goal.
+    pub step_reward: f64,
+    /// Reward of the step that does.
+    pub goal_reward: f64,
+}
+
+impl Default for FourRoomsSettings {
+    fn default() -> Self {
+        Self {
+            goal_cell: GOAL_CELL,
+            slip: SLIP,
+            step_reward: STEP_REWARD,
+            goal_reward: STEP_REWARD,
+        }
+    }
+}
+
 /// What the agent perceives: the number of its cell, and nothing else.
 pub type Percept = [f32; INPUTS];
 
-/// The world of four rooms. Its state is the cell that the agent is in, counted row by row
+/// The world of four rooms. Its state is the number of the agent's cell, counted row by row
 /// from the upper left, walls included.
 #[derive(Clone, Debug)]
 pub struct FourRoomsWorld {
@@ -46,10 +64,10 @@ pub struct FourRoomsWorld {
 }
 
 impl FourRoomsWorld {
-    /// The world of settings that obey the rules.
+    /// Makes the world of settings that obey the rules.
     ///
     /// # Errors
-    /// When the goal lies in a wall or outside.
+    /// Fails if the goal lies in a wall or outside the house.
     pub fn new(settings: &FourRoomsSettings) -> Result<Self, Problem> {
         let house = House::new();
         let goal = house.goal(settings.goal_cell)?;
@@ -61,27 +79,56 @@ impl FourRoomsWorld {
         })
     }
 
-    /// The cells in which trials begin.
+    /// Cells in which trials start.
     fn starts(&self) -> impl Iterator<Item = usize> {
         self.house.cells().filter(|&cell| cell != self.goal)
     }
 
-    /// Where a move leads, and its reward.
+    /// Returns the cell that a move leads to, and its reward.
     fn walk(&self, cell: usize, direction: Direction) -> (usize, f64) {
         let to = self.house.to(cell, direction);
-        match to == self.goal {
-            true => (to, self.settings.goal_reward),
-            false => (to, self.settings.step_reward),
-        }
+        let settings = &self.settings;
+        let at_goal = to == self.goal;
+        let reward = if at_goal {
+            settings.goal_reward
+        } else {
+            settings.step_reward
+        };
+        (to, reward)
     }
-}
 
-fn direction(primitive: SubtaskId) -> Direction {
-    match primitive {
-        DOWN => Direction::Down,
-        RIGHT => Direction::Right,
-        LEFT => Direction::Left,
-        _ => Direction::Up,
+    fn mdp_state(&self, cell: usize) -> MdpState<Percept> {
+        let mut state = MdpState {
+            state_type: self.state_type(&cell),
+            percept: self.percept(&cell),
+            start: 0.0,
+            outcomes: Vec::new(),
+        };
+        if cell != self.goal {
+            state.start = 1.0 / self.starts().count() as f64;
+            state.outcomes = ACTIONS
+                .map(|primitive| self.outcomes(cell, primitive))
+                .into();
+        }
+        state
+    }
+
+    fn outcomes(&self, cell: usize, primitive: SubtaskId) -> Vec<Outcome> {
+        let meant = Direction::of(primitive, ACTIONS);
+        let slips = meant
+            .others()
+            .map(|other| (self.settings.slip / 3.0, other));
+        let straight = std::iter::once((1.0 - self.settings.slip, meant));
+        let all = straight.chain(slips).filter(|&(chance, _)| chance > 0.0);
+        all.map(|(probability, direction)| {
+            let (next, reward) = self.walk(cell, direction);
+            Outcome {
+                probability,
+                reward,
+                next,
+            }
+        })
+        .collect()
     }
 }
 
@@ -125,7 +172,7 @@ impl World for FourRoomsWorld {
     }
 
     fn step(&self, state: &mut usize, primitive: SubtaskId, _: usize, rng: &mut Stream) -> f32 {
-        let mut towards = direction(primitive);
+        let mut towards = Direction::of(primitive, ACTIONS);
         if rng.random_bool(self.settings.slip) {
             towards = towards.others()[rng.random_range(0..3_usize)];
         }
@@ -135,9 +182,10 @@ impl World for FourRoomsWorld {
     }
 
     fn state_type(&self, state: &usize) -> StateType {
-        match *state == self.goal {
-            true => AT_GOAL,
-            false => self.house.place(*state).state_type(),
+        if *state == self.goal {
+            AT_GOAL
+        } else {
+            self.house.place(*state).state_type()
         }
     }
 
@@ -156,6 +204,12 @@ impl World for FourRoomsWorld {
     }
 
     fn mdp(&self) -> Option<Mdp<Percept>> {
-        Some(self.as_mdp())
+        let states = (0..CELLS).map(|cell| self.house.is_free(cell).then(|| self.mdp_state(cell)));
+        Some(Mdp {
+            table: CELL,
+            gaussian: None,
+            actions: ACTIONS.map(|primitive| (primitive, 0)).into(),
+            states: states.collect(),
+        })
     }
 }

@@ -1,11 +1,9 @@
-//! The taxi world as a finite MDP.
+//! The taxi world as an MDP.
 
-use super::catalogue::{EAST, NORTH, PICKUP, PUTDOWN, SOUTH, STATE, WEST, passenger_places};
+use super::catalogue::{ACTIONS, PICKUP, PUTDOWN, STATE, passenger_places};
 use super::{Chance, Passenger, Percept, Slip, TaxiState, TaxiWorld};
 use crate::worlds::mdp::{Mdp, MdpState, Outcome};
 use crate::worlds::{SubtaskId, World};
-
-const ACTIONS: [SubtaskId; 6] = [NORTH, SOUTH, EAST, WEST, PICKUP, PUTDOWN];
 
 impl TaxiWorld {
     /// All states with all that can come of every action.

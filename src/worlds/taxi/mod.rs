@@ -1,25 +1,5 @@
-//! The taxi problem (Dietterich 2000, section 3.1; Thesis 2.2.2, Figures 2.6 to 2.8).
-//!
-//! A taxi in a grid city with walls and a few stands. A passenger waits at one stand,
-//! the source, and wants to go to another, the destination, which can be the same.
-//!
-//! - **Actions.** North, South, East, West move the taxi by one cell, or not at all where
-//!   a wall stands in the way. Pickup takes the passenger on, Putdown sets him down.
-//! - **Start.** Any cell, source and destination, all alike.
-//! - **Rewards.** -1 for every action; in addition 20 for putting the passenger down at
-//!   his destination, -10 for a Pickup where he does not wait, and for a Putdown without
-//!   him or elsewhere. The thesis says "in addition", and its values come out so; others
-//!   give -10 in all for an illegal action.
-//! - **End.** The passenger has been put down at his destination.
-//! - **The fickle taxi.** A move slips to its right or left; and when the taxi first moves
-//!   away from where the passenger boarded it, he may want to go to another stand, all
-//!   others alike.
-//!
-//! The six actions are primitive subtasks with one action each, which can act in any
-//! state (Thesis Definition 2.1). `Navigate(t)` occurs twice, once for each way in which
-//! its parameter is bound, as in the acyclic graph of Thesis Figure 3.1:
-//! `NavigateToPassenger` is Navigate(source), `NavigateToDestination` is
-//! Navigate(destination). Its parameter follows the destination when that changes.
+//! The taxi problem (Dietterich 2000, section 3.1; Thesis 2.2.2, Figures 2.6 to 2.8). Its
+//! specification is on the page of [the worlds](super).
 
 mod catalogue;
 mod city;
