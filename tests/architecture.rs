@@ -1,16 +1,26 @@
-//! The house: imports between the rooms of `src/` point one way, the terminal is known in
-//! `dashboard/` alone, files stay short, and nothing gives up instead of returning an error.
+//! Contract: imports between the rooms of `src/` point one way, and no files import each other in
+//! a circle. Only `dashboard/` knows the terminal. Files are short, and errors are returned.
 //!
 //! Why it matters: the library must run without a terminal, evolution must be testable
-//! without files, and a room that names its visitors cannot be understood alone.
+//! without files, and a file must be understood without those that use it.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+#[allow(dead_code)] // Its `main` is for Cargo.
+#[path = "../src/build.rs"]
+mod build;
+#[path = "architecture/circles.rs"]
+mod circles;
+
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-/// The rooms, each with its rank: a room may name rooms of higher ranks, and its own.
-/// `files`, `random` and `rules` are tools that every room may use.
+use maxq_lab::scenario::{EMBEDDED, EMBEDDED_PLANS, Embedded};
+
+/// The rooms with their ranks. A room may import from itself and from rooms of higher ranks.
+/// Every room may use the tools `files`, `random` and `rules`.
 const ROOMS: &[(&str, usize)] = &[
     ("cli", 0),
     ("dashboard", 1),
@@ -26,7 +36,7 @@ const ROOMS: &[(&str, usize)] = &[
     ("rules", 8),
 ];
 
-/// Files that belong to no room: they say what the rooms are.
+/// Files that belong to no room: they list the rooms.
 const DOORS: &[&str] = &["main.rs", "lib.rs", "build.rs"];
 
 const LONGEST_FILE: usize = 500;
@@ -46,7 +56,7 @@ impl Source {
         }
     }
 
-    /// The room: the first folder, or the file itself.
+    /// The room is the first folder, or the file itself.
     fn room(&self) -> String {
         let first = self.path.components().next().unwrap();
         Path::new(&first)
@@ -60,7 +70,7 @@ impl Source {
         DOORS.iter().any(|door| self.path == Path::new(door))
     }
 
-    /// Lines of code with their numbers, comments left out.
+    /// Lines of code with their numbers, without comments.
     fn code(&self) -> impl Iterator<Item = (usize, &str)> {
         let numbered = self.lines.iter().enumerate();
         numbered
@@ -68,15 +78,19 @@ impl Source {
             .filter(|(_, code)| !code.trim().is_empty())
     }
 
-    /// The code before the test module, which stands at the end of a file.
+    /// The code before the test module, which is the last item of a file.
     fn code_without_tests(&self) -> impl Iterator<Item = (usize, &str)> {
         self.code()
             .take_while(|(_, code)| code.trim() != "#[cfg(test)]")
     }
 }
 
+fn package(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
 fn sources() -> Vec<Source> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let root = package("src");
     let mut folders = vec![root.clone()];
     let mut sources = Vec::new();
     while let Some(folder) = folders.pop() {
@@ -93,7 +107,7 @@ fn sources() -> Vec<Source> {
     sources
 }
 
-/// Names that follow `crate::` in a line.
+/// The names that follow `crate::` in a line.
 fn rooms_named(code: &str) -> impl Iterator<Item = &str> {
     code.split("crate::").skip(1).map(|rest| {
         let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_');
@@ -137,32 +151,45 @@ fn the_check_of_imports_sees_what_it_should() {
         named("fn f(a: crate::cli::A, b: crate::files::B)"),
         ["cli", "files"]
     );
-    // A list of rooms is not understood, so it is not allowed: it names the room "".
+    // A list of rooms is not allowed: it names the room "".
     assert_eq!(named("use crate::{cli, lab};"), [""]);
     assert_eq!(rank(""), None);
 }
 
-/// The worlds: the folders of `src/worlds`.
-fn worlds() -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/worlds");
-    let entries = fs::read_dir(folder).unwrap().map(Result::unwrap);
-    let folders = entries.filter(|entry| entry.path().is_dir());
-    folders
-        .map(|folder| folder.file_name().into_string().unwrap())
+/// Every file imports only from below: the circles of `circles::circles`, which says how a
+/// re-export is followed.
+#[test]
+fn no_files_import_each_other_in_a_circle() {
+    let circles = circles::circles(&package("src"));
+    assert!(circles.is_empty(), "{circles:#?}");
+}
+
+/// The names of the folders, or else of the files, in a folder, without their extensions.
+fn entries(folder: &str, folders: bool) -> BTreeSet<String> {
+    let entries = fs::read_dir(package(folder)).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let wanted = paths.filter(|path| path.is_dir() == folders);
+    wanted
+        .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
         .collect()
 }
 
-/// Whether `code` names something of the world `four_rooms`: `four_rooms::START`, `FourRoomsWorld`.
-fn names(code: &str, world: &str) -> bool {
+/// `FourRooms` of the world `four_rooms`.
+fn camel_case(world: &str) -> String {
     let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
-    let camel_case: String = world.split('_').map(capital).collect();
+    world.split('_').map(capital).collect()
+}
+
+/// Whether `code` names an item of the world `four_rooms`: `four_rooms::START`, `FourRoomsWorld`.
+fn names(code: &str, world: &str) -> bool {
+    let camel_case = camel_case(world);
     let mut words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
     code.contains(&format!("{world}::")) || words.any(|word| word.starts_with(&camel_case))
 }
 
 #[test]
-fn a_world_is_known_in_its_own_folder_alone() {
-    let worlds = worlds();
+fn only_its_own_folder_knows_a_world() {
+    let worlds = entries("src/worlds", true);
     assert!(worlds.len() >= 3, "the worlds were not found");
     let mut wrong = Vec::new();
     for source in sources() {
@@ -186,7 +213,7 @@ fn the_check_of_worlds_sees_what_it_should() {
         "let world = FourRoomsWorld::new(model);",
         "four_rooms"
     ));
-    // The name of a scenario, in a message or an example.
+    // The name of a scenario in a message or an example does not count.
     assert!(!names("maxq-lab learn taxi-fickle", "taxi"));
 }
 
@@ -204,7 +231,7 @@ fn only_the_dashboard_knows_the_terminal() {
 }
 
 #[test]
-fn nothing_is_unsafe_and_nothing_gives_up() {
+fn nothing_is_unsafe_and_nothing_panics() {
     for source in sources() {
         for (number, code) in source.code() {
             let words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
@@ -212,14 +239,14 @@ fn nothing_is_unsafe_and_nothing_gives_up() {
             assert!(!is_unsafe, "{}:{number}: {code}", source.path.display());
         }
         for (number, code) in source.code_without_tests() {
-            for giving_up in [
+            for panicking in [
                 ".unwrap()",
                 ".expect(",
                 "panic!(",
                 "todo!(",
                 "unimplemented!(",
             ] {
-                let found = code.contains(giving_up);
+                let found = code.contains(panicking);
                 assert!(!found, "{}:{number}: {code}", source.path.display());
             }
         }
@@ -237,14 +264,85 @@ fn files_are_short() {
     }
 }
 
-/// The list in `worlds/mod.rs` is complete.
+/// The list in `worlds/mod.rs` names every folder, and only folders.
 #[test]
-fn every_folder_of_worlds_is_a_world() {
-    let list = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/worlds/mod.rs");
-    let list = fs::read_to_string(list).unwrap();
-    for world in worlds() {
-        assert!(list.contains(&format!("pub mod {world};")), "{world}");
+fn the_folders_of_worlds_are_the_variants_of_world_settings() {
+    let list = fs::read_to_string(package("src/worlds/mod.rs")).unwrap();
+    let (_, list) = list.split_once("worlds! {").unwrap();
+    let (list, _) = list.split_once("\n}").unwrap();
+    let lines = list.lines().map(str::trim);
+    let listed: BTreeSet<_> = lines.filter(|line| line.ends_with(';')).collect();
+    let expected: BTreeSet<_> = entries("src/worlds", true)
+        .iter()
+        .map(|world| {
+            let name = camel_case(world);
+            format!("{name}: \"{world}\", {world}::{name}Settings;")
+        })
+        .collect();
+    assert_eq!(listed, expected.iter().map(String::as_str).collect());
+}
+
+#[test]
+fn the_files_of_scenarios_are_embedded() {
+    let embedded = |all: &[Embedded]| -> BTreeSet<_> {
+        all.iter()
+            .map(|embedded| embedded.name.to_owned())
+            .collect()
+    };
+    let mut files = entries("scenarios", false);
+    files.remove("README");
+    assert_eq!(embedded(EMBEDDED), files);
+    let mut files = entries("scenarios/studies", false);
+    files.remove("README");
+    assert_eq!(embedded(EMBEDDED_PLANS), files);
+}
+
+/// A package that was unpacked below another repository does not name that one's commit.
+#[test]
+fn the_commit_is_that_of_the_packages_own_repository() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("package");
+    fs::create_dir(&package).unwrap();
+    let git = |at: &Path, arguments: &[&str]| {
+        let mut git = Command::new("git");
+        let git = git
+            .current_dir(at)
+            .args(["-c", "user.name=N", "-c", "user.email=n@example.org"]);
+        git.args(arguments)
+            .output()
+            .is_ok_and(|output| output.status.success())
+    };
+    let commit_in = |at: &Path| {
+        let commit = [
+            "commit",
+            "--quiet",
+            "--allow-empty",
+            "--message",
+            "A commit",
+        ];
+        git(at, &["init", "--quiet"]) && git(at, &commit)
+    };
+    assert_eq!(build::commit(&package), None, "no repository");
+    if !commit_in(folder.path()) {
+        return; // Without git there is nothing to record.
     }
+    assert_eq!(build::commit(&package), None, "a foreign repository");
+    assert!(commit_in(&package));
+    let (clean, watched) = build::commit(&package).unwrap();
+    assert!(
+        clean.len() >= 7 && clean.chars().all(|c| c.is_ascii_hexdigit()),
+        "{clean}"
+    );
+    let ends = |end: &str| watched.iter().any(|path| path.ends_with(end));
+    assert!(ends(".git/HEAD") && ends(".git/logs/HEAD"), "{watched:?}");
+    fs::write(package.join("file"), "").unwrap();
+    assert!(git(&package, &["add", "file"]));
+    let (dirty, watched) = build::commit(&package).unwrap();
+    assert_eq!(dirty, format!("{clean}-dirty"));
+    assert!(
+        watched.iter().any(|path| path.ends_with(".git/index")),
+        "{watched:?}"
+    );
 }
 
 /// The floors of the dashboard, from the ground up: a file may import from its own floor and
