@@ -1,4 +1,4 @@
-//! Files: reading what may be hostile, writing so that nothing is ever half there.
+//! Files: reads of possibly hostile files, and atomic writes.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read, Write};
@@ -68,7 +68,7 @@ impl From<String> for FileProblem {
 /// Reads a file of at most `limit` bytes, and never takes more into memory.
 ///
 /// # Errors
-/// When the file cannot be read or is larger.
+/// Fails if the file cannot be read or is larger.
 pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
@@ -82,7 +82,7 @@ pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
 /// Reads a UTF-8 file of at most `limit` bytes.
 ///
 /// # Errors
-/// When the file cannot be read, is larger, or is not UTF-8.
+/// Fails if the file cannot be read, is larger, or is not UTF-8.
 pub fn read_text(path: &Path, limit: u64) -> Result<String, FileError> {
     String::from_utf8(read_bytes(path, limit)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
@@ -90,8 +90,9 @@ pub fn read_text(path: &Path, limit: u64) -> Result<String, FileError> {
     })
 }
 
-/// The version in the `format` field of a JSON text, if it has one. A file of another
-/// format is one of another model, so this is looked at before anything else in it.
+/// Returns the version in the `format` field of a JSON text, if it has one.
+///
+/// It is checked before anything else: other fields have other meanings in other formats.
 #[must_use]
 pub fn stated_format(text: &str) -> Option<u32> {
     #[derive(Deserialize)]
@@ -102,7 +103,7 @@ pub fn stated_format(text: &str) -> Option<u32> {
     Some(any.format)
 }
 
-/// Why a JSON text cannot be read, and where.
+/// An error in a JSON text.
 #[derive(Debug, Error)]
 #[error("line {line}, column {column}, at {place}: {message}")]
 pub struct JsonError {
@@ -110,16 +111,16 @@ pub struct JsonError {
     pub line: usize,
     /// Column, from 1.
     pub column: usize,
-    /// Dotted path of the value.
+    /// Dotted path of the wrong value.
     pub place: String,
-    /// What was found and what was expected.
+    /// What was found, and what was expected.
     pub message: String,
 }
 
 const TOP: &str = "the top level";
 
 impl JsonError {
-    /// The same of a value that is the part `name` of another.
+    /// Returns the same error for a value that is the part `name` of another.
     #[must_use]
     pub fn within(self, name: &str) -> Self {
         let place = match self.place.as_str() {
@@ -142,10 +143,10 @@ impl JsonError {
     }
 }
 
-/// Reads a JSON text that is one value and nothing more.
+/// Parses a JSON text of exactly one value.
 ///
 /// # Errors
-/// When it is not JSON of the type, with the place.
+/// Fails with the place if the text is not JSON of the type.
 pub fn parse_json<'t, T: Deserialize<'t>>(text: &'t str) -> Result<T, JsonError> {
     let mut json = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize(&mut json).map_err(|error| {
@@ -161,18 +162,17 @@ pub fn parse_json<'t, T: Deserialize<'t>>(text: &'t str) -> Result<T, JsonError>
     Ok(value)
 }
 
-/// How the names of files begin that are being written. One that is found when nobody
-/// writes was left by a process that died.
+/// Prefix of the names of files that are being written. A process that dies leaves its files.
 pub const WRITING: &str = ".writing-";
 
-/// Replaces the file at `path` by `bytes`, so that at every moment, and after a
-/// crash, it holds either its old or its new content.
+/// Replaces the file at `path` by `bytes`. At every moment, and after a crash, it has either its
+/// old or its new content.
 ///
-/// The bytes go to a temporary file in the same folder, are synced, renamed into
-/// place, and the folder is synced.
+/// The bytes are written to a temporary file in the same folder and synced. The file is renamed,
+/// and the folder is synced.
 ///
 /// # Errors
-/// When the operating system refuses.
+/// Fails if the operating system refuses.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let temporary = written(path, bytes)?;
     temporary.as_file().sync_all()?;
@@ -180,22 +180,23 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(folder_of(path))
 }
 
-/// Replaces the file at `path` by `bytes` in one step, whatever happens to this process.
-/// A crash of the whole machine soon after may lose the new content.
+/// Replaces the file at `path` by `bytes` in one step, even if this process dies.
+///
+/// If the whole machine crashes soon after, the new content may be lost.
 ///
 /// # Errors
-/// When the operating system refuses.
+/// Fails if the operating system refuses.
 pub fn write_in_one_step(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let temporary = written(path, bytes)?;
     temporary.persist(path).map_err(|error| error.error)?;
     Ok(())
 }
 
-/// Makes `path` a second name of the file `from`, in one step and durably; where the
-/// file system has no such names, a copy.
+/// Makes `path` a hard link to the file `from`, in one step and durably. On a file system
+/// without hard links it becomes a copy.
 ///
 /// # Errors
-/// When the operating system refuses.
+/// Fails if the operating system refuses.
 pub fn link_atomically(from: &Path, path: &Path) -> io::Result<()> {
     let folder = folder_of(path);
     let file = File::open(from)?;
@@ -212,12 +213,11 @@ pub fn link_atomically(from: &Path, path: &Path) -> io::Result<()> {
     sync_folder(folder)
 }
 
-/// Deletes what processes that died have left half made in a folder: entries whose names
-/// begin with `prefix` and that have not changed for `age`. What cannot be deleted harms
-/// nobody and stays.
+/// Deletes what dead processes have left in a folder: entries whose names begin with `prefix` and
+/// that have not changed for `age`. Entries that cannot be deleted stay.
 ///
 /// # Errors
-/// When the folder is there but cannot be read.
+/// Fails if the folder exists but cannot be read.
 pub fn clean(folder: &Path, prefix: &str, age: Duration) -> io::Result<()> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
@@ -236,16 +236,17 @@ pub fn clean(folder: &Path, prefix: &str, age: Duration) -> io::Result<()> {
             .ok()
             .and_then(|then| then.elapsed().ok());
         if age.is_zero() || unchanged.is_some_and(|unchanged| unchanged >= age) {
-            let _left = match metadata.is_dir() {
-                true => fs::remove_dir_all(entry.path()),
-                false => fs::remove_file(entry.path()),
+            let _stays = if metadata.is_dir() {
+                fs::remove_dir_all(entry.path())
+            } else {
+                fs::remove_file(entry.path())
             };
         }
     }
     Ok(())
 }
 
-/// A temporary file beside `path` that holds `bytes`.
+/// Writes `bytes` to a temporary file in the folder of `path`.
 fn written(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(WRITING);
@@ -257,8 +258,7 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     Ok(temporary)
 }
 
-/// What the operating system said, without the name of a temporary file, which tells nobody
-/// anything.
+/// Removes the meaningless name of a temporary file from an error.
 #[must_use]
 pub fn without_path(error: io::Error) -> io::Error {
     match error.to_string().rsplit_once(" at path ") {
@@ -270,12 +270,12 @@ pub fn without_path(error: io::Error) -> io::Error {
 /// Makes renames and new files in `folder` durable.
 ///
 /// # Errors
-/// When the operating system refuses.
+/// Fails if the operating system refuses.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     fs::File::open(folder)?.sync_all()
 }
 
-/// The folder that `path` lies in.
+/// Returns the folder of `path`.
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -283,7 +283,7 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Tells one version of a file from another, and from a file that took its place.
+/// Identifies a version of a file, to recognise when it has changed or another has replaced it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp {
     file: (u64, u64),
@@ -292,7 +292,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// Of the file at `path`; none if there is none.
+    /// Returns the stamp of the file at `path`, if there is one.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let metadata = path.metadata().ok().filter(Metadata::is_file)?;
@@ -311,8 +311,7 @@ impl Stamp {
     }
 }
 
-/// Makes control characters visible, line breaks excepted: text from files must not steer a
-/// terminal.
+/// Escapes control characters other than line breaks: text from files must not control a terminal.
 #[must_use]
 pub fn visible(text: &str) -> String {
     let shown = |c: char| match c {

@@ -1,22 +1,20 @@
-//! Random streams that depend on what they are for and on nothing else.
+//! Random streams that depend only on what they are for.
 //!
-//! A stream is named by the seed of the run, the generation, the individual and
-//! the [`Purpose`]; these four numbers are the key of a ChaCha8 generator. No
-//! stream is ever shared between individuals or threads, so the order in which
-//! individuals are computed cannot change a bit of the result.
+//! The seed of the run, the generation, the individual and the [`Purpose`] are the key of a
+//! ChaCha8 generator. Individuals and threads share no stream, so the order in which individuals
+//! are computed cannot change a bit of the result.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// The generator behind every random decision: portable and, keyed as here,
-/// independent between streams. Eight rounds are far beyond what a simulation
-/// can tell from chance, and twice as fast as twenty.
+/// The generator behind every random decision. It is portable, and streams with different keys
+/// are independent. Eight rounds are more than enough for a simulation, and twice as fast as
+/// twenty.
 pub type Stream = ChaCha8Rng;
 
-/// What a random stream is used for.
+/// The purpose of a random stream.
 ///
-/// The discriminants are part of the meaning of a seed: changing one changes the
-/// result of every run.
+/// A change of a discriminant changes the result of every run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Purpose {
@@ -30,22 +28,22 @@ pub enum Purpose {
     Trials = 4,
     /// Selection and crossover after a generation.
     Breeding = 5,
-    /// The chance that replaces fitness under `selection: random`.
+    /// The random ranks that replace fitness under `selection: random`.
     RandomRank = 6,
     /// One repeat of `evaluate`.
     Evaluation = 7,
-    /// A rollout that somebody watches.
+    /// A rollout in the dashboard.
     Watching = 8,
-    /// The noise of readings all over a policy map.
+    /// The noise of the readings in a policy map.
     PolicyMap = 9,
-    /// Resampling for the interval of a statistic.
+    /// Resampling for the confidence interval of a statistic.
     Bootstrap = 10,
 }
 
-/// The stream for `purpose` in the given run, generation and individual.
+/// Returns the stream for `purpose` in the given run, generation and individual.
 ///
-/// `individual` is whatever numbers the parallel pieces of work: an individual,
-/// a primitive subtask, a repeat.
+/// `individual` numbers the parallel pieces of work: an individual, a primitive subtask or a
+/// repeat.
 #[must_use]
 pub fn stream(seed: u64, generation: u64, individual: u64, purpose: Purpose) -> Stream {
     let mut key = [0; 32];
@@ -63,7 +61,7 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn neighbouring_streams_differ_and_repeat() {
+    fn streams_differ_and_can_be_repeated() {
         let mut seen = HashSet::new();
         for seed in 0..4 {
             for generation in 0..4 {

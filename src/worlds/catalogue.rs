@@ -1,14 +1,14 @@
-//! What a world tells about its subtasks: names, active states, goals, features.
+//! The subtasks of a world: names, active state types, goals, features.
 
 use std::fmt;
 
-/// The type of a state, numbered from 0; the worlds' documentation, and all that a
-/// person sees, numbers them from 1 as Thesis Table 4.1 does.
+/// The type of a state, numbered from 0. Documentation and output number the types from 1, as
+/// Thesis Table 4.1 does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StateType(pub u8);
 
 impl StateType {
-    /// The number a person sees.
+    /// Returns the number in documentation and output.
     #[must_use]
     pub fn number(self) -> usize {
         usize::from(self.0) + 1
@@ -20,7 +20,7 @@ impl StateType {
 pub struct StateTypes(u32);
 
 impl StateTypes {
-    /// The set of the given types.
+    /// Returns the set of the given types.
     #[must_use]
     pub const fn of(types: &[StateType]) -> Self {
         let mut bits = 0;
@@ -32,62 +32,62 @@ impl StateTypes {
         Self(bits)
     }
 
-    /// Whether the set holds `state_type`.
+    /// Returns whether the set contains `state_type`.
     #[must_use]
     pub const fn contains(self, state_type: StateType) -> bool {
         self.0 & (1 << state_type.0) != 0
     }
 
-    /// Whether the two sets share a type.
+    /// Returns whether the sets have a type in common.
     #[must_use]
     pub const fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether every type of this set is in the other.
+    /// Returns whether every type of this set is in the other.
     #[must_use]
     pub const fn is_subset_of(self, other: Self) -> bool {
         self.0 & !other.0 == 0
     }
 
-    /// The types of both sets.
+    /// Returns the types that are in either set.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// The types that are in both sets.
+    /// Returns the types that are in both sets.
     #[must_use]
     pub const fn intersection(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// The types of this set that are not in the other.
+    /// Returns the types of this set that are not in the other.
     #[must_use]
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// How many types the set holds.
+    /// Returns the number of types.
     #[must_use]
     pub const fn len(self) -> usize {
         self.0.count_ones() as usize
     }
 
-    /// Whether the set is empty.
+    /// Returns whether the set is empty.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// How many types of the set come before `state_type`: the place of its block
-    /// among the one-hot blocks of a subtask's parameters.
+    /// Returns the number of types of the set before `state_type`: the place of its block among
+    /// the one-hot blocks of a subtask's parameters.
     #[must_use]
     pub const fn rank(self, state_type: StateType) -> usize {
         (self.0 & ((1 << state_type.0) - 1)).count_ones() as usize
     }
 
-    /// The types in ascending order.
+    /// Returns the types in ascending order.
     pub fn iter(self) -> impl Iterator<Item = StateType> {
         (0..u32::BITS as u8)
             .map(StateType)
@@ -102,40 +102,40 @@ impl fmt::Display for StateTypes {
     }
 }
 
-/// A subtask of a catalogue: its index there.
+/// The index of a subtask in its catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SubtaskId(pub u8);
 
 impl SubtaskId {
-    /// The root of every hierarchy comes first in a catalogue.
+    /// The root of every hierarchy, the first subtask of every catalogue.
     pub const ROOT: Self = Self(0);
 
-    /// The index into [`Catalogue::subtasks`].
+    /// Returns the index into [`Catalogue::subtasks`].
     #[must_use]
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 
-    /// The subtask's name in the given catalogue.
+    /// Returns the subtask's name in the given catalogue.
     #[must_use]
     pub fn name(self, catalogue: &Catalogue) -> &str {
         &catalogue.subtask(self).name
     }
 }
 
-/// A feature map of a catalogue: its index there.
+/// The index of a feature map in its catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MapId(pub u8);
 
 impl MapId {
-    /// The index into [`Catalogue::maps`].
+    /// Returns the index into [`Catalogue::maps`].
     #[must_use]
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 }
 
-/// One input of a feature map, covered by equidistant RBF centres from 0 to 1.
+/// An input of a feature map, covered by equidistant RBF centres from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
     /// Index into the world's percept.
@@ -146,38 +146,36 @@ pub struct Axis {
     pub sigma: f64,
 }
 
-/// One input of a table: a whole number from 0.
+/// An input of a table: a whole number from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Index {
     /// Index into the world's percept.
     pub input: usize,
-    /// The number of values that it can have.
+    /// Number of values.
     pub values: usize,
 }
 
-/// How features are made of inputs; the last input varies fastest in the parameter
-/// vectors.
+/// How features are computed from inputs. In parameter vectors the last input varies fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FeatureKind {
     /// A grid of normalised Gaussian features (Thesis Eq. 2.22).
     Gaussian(Vec<Axis>),
-    /// One feature for each combination of values, one where it is the case and zero
-    /// elsewhere: the linear approximator then is a table. A table without inputs has
-    /// one entry.
+    /// A table: one feature for each combination of values, which is one for the present
+    /// combination and zero otherwise. A table without inputs has one entry.
     Table(Vec<Index>),
 }
 
-/// The features of some inputs.
+/// Features of some inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeatureMap {
-    /// What the map covers, for people.
+    /// The inputs in words.
     pub name: String,
-    /// The inputs, and what is made of them.
+    /// The inputs and how features are computed from them.
     pub kind: FeatureKind,
 }
 
 impl FeatureMap {
-    /// Number of features: the product over all inputs.
+    /// Returns the number of features: the product over all inputs.
     #[must_use]
     pub fn width(&self) -> usize {
         match &self.kind {
@@ -186,7 +184,7 @@ impl FeatureMap {
         }
     }
 
-    /// The axes of a grid of Gaussians; none for a table.
+    /// Returns the axes of a grid of Gaussians; none for a table.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {
         match &self.kind {
@@ -196,17 +194,17 @@ impl FeatureMap {
     }
 }
 
-/// How the completion functions of a composite subtask see the type of a state.
+/// How the completion functions of a composite subtask depend on the type of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blocks {
     /// One-hot: a block of features for each state type that the subtask is active in
     /// (Thesis 4.2).
     PerStateType,
-    /// Not at all, but for what is in the inputs.
+    /// Not at all: one block for all state types.
     One,
 }
 
-/// What kind of subtask it is.
+/// The kind of a subtask.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// Chooses among its children until it terminates.
@@ -216,15 +214,15 @@ pub enum Kind {
         goal: StateTypes,
         /// Its weight in the structural difference (Thesis 4.5.2).
         weight: u32,
-        /// How its completion functions see state types.
+        /// How its completion functions depend on state types.
         blocks: Blocks,
-        /// Children whose completion functions look at less than the subtask does:
+        /// Children whose completion functions have a map of their own, with fewer inputs:
         /// state abstraction (Dietterich 2000, section 5).
         abstractions: Vec<(SubtaskId, MapId)>,
     },
     /// Executes one of its actions for one time step.
     Primitive {
-        /// What its actions do, for people; one entry an action.
+        /// What each action does, in words.
         actions: Vec<String>,
     },
 }
@@ -232,9 +230,9 @@ pub enum Kind {
 /// A subtask that a world provides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subtask {
-    /// Its name in hierarchies, such as `FindBattery`.
+    /// The name in hierarchies, such as `FindBattery`.
     pub name: String,
-    /// What it is for, in a few words.
+    /// Its purpose in a few words.
     pub purpose: String,
     /// State types in which it can be active (Thesis Tables 4.2 and 4.3).
     pub active: StateTypes,
@@ -245,13 +243,13 @@ pub struct Subtask {
 }
 
 impl Subtask {
-    /// Whether this is a composite subtask.
+    /// Returns whether the subtask is composite.
     #[must_use]
     pub fn is_composite(&self) -> bool {
         matches!(self.kind, Kind::Composite { .. })
     }
 
-    /// Number of actions of a primitive subtask; 0 for a composite one.
+    /// Returns the number of actions: 0 for a composite subtask.
     #[must_use]
     pub fn actions(&self) -> usize {
         match &self.kind {
@@ -260,7 +258,8 @@ impl Subtask {
         }
     }
 
-    /// Number of blocks in a parameter vector: see [`Blocks`]; 1 for a primitive subtask.
+    /// Returns the number of blocks in a parameter vector (see [`Blocks`]): 1 for a primitive
+    /// subtask.
     #[must_use]
     pub fn blocks(&self) -> usize {
         match self.kind {
@@ -272,7 +271,7 @@ impl Subtask {
         }
     }
 
-    /// Which block a state type has.
+    /// Returns the block of a state type.
     #[must_use]
     pub fn block(&self, state_type: StateType) -> usize {
         match self.blocks() {
@@ -281,7 +280,7 @@ impl Subtask {
         }
     }
 
-    /// State types that are goals of a composite subtask; none for a primitive one.
+    /// Returns the goal of a composite subtask: no state type for a primitive one.
     #[must_use]
     pub fn goal(&self) -> StateTypes {
         match self.kind {
@@ -291,10 +290,10 @@ impl Subtask {
     }
 }
 
-/// A state type for people.
+/// A state type in words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateTypeInfo {
-    /// What is the case in such a state.
+    /// What is true in states of the type.
     pub description: String,
 }
 
@@ -303,42 +302,42 @@ pub struct StateTypeInfo {
 pub struct Catalogue {
     /// The non-terminal state types, in order.
     pub state_types: Vec<StateTypeInfo>,
-    /// The subtasks; the root comes first, composites before primitives.
+    /// The subtasks: the root first, composites before primitives.
     pub subtasks: Vec<Subtask>,
     /// The feature maps.
     pub maps: Vec<FeatureMap>,
 }
 
 impl Catalogue {
-    /// The subtask with this id.
+    /// Returns the subtask with this id.
     #[must_use]
     pub fn subtask(&self, id: SubtaskId) -> &Subtask {
         &self.subtasks[id.index()]
     }
 
-    /// The subtask with this name.
+    /// Returns the subtask with this name.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<SubtaskId> {
         self.ids().find(|&id| self.subtask(id).name == name)
     }
 
-    /// All subtasks in order.
+    /// Returns all subtasks in order.
     pub fn ids(&self) -> impl Iterator<Item = SubtaskId> + '_ {
         (0..self.subtasks.len()).map(|index| SubtaskId(index as u8))
     }
 
-    /// The composite subtasks in order.
+    /// Returns the composite subtasks in order.
     pub fn composites(&self) -> impl Iterator<Item = SubtaskId> + '_ {
         self.ids().filter(|&id| self.subtask(id).is_composite())
     }
 
-    /// The primitive subtasks in order.
+    /// Returns the primitive subtasks in order.
     pub fn primitives(&self) -> impl Iterator<Item = SubtaskId> + '_ {
         self.ids().filter(|&id| !self.subtask(id).is_composite())
     }
 
-    /// One capital letter for each primitive subtask: the first of its capitals, or else of
-    /// its letters, that no other has.
+    /// Returns one capital letter for each primitive subtask: the first of its capitals that no
+    /// subtask before it has, or else of its other letters; `?` if there is none.
     #[must_use]
     pub fn letters(&self) -> Vec<char> {
         let mut letters: Vec<char> = Vec::new();
@@ -354,19 +353,19 @@ impl Catalogue {
         letters
     }
 
-    /// The non-terminal state types in order.
+    /// Returns the non-terminal state types in order.
     pub fn types(&self) -> impl Iterator<Item = StateType> + '_ {
         (0..self.state_types.len()).map(|index| StateType(index as u8))
     }
 
-    /// The type of a state in which the overall task is done.
+    /// Returns the type of states in which the overall task is done.
     #[must_use]
     pub fn terminal(&self) -> StateType {
         StateType(self.state_types.len() as u8)
     }
 
-    /// The map of the completion functions of `parent` for `child`, both C~ and C: the
-    /// parent's, unless the world says that less is enough.
+    /// Returns the map of both completion functions C~ and C of `parent` for `child`: that of
+    /// the parent, unless the parent has an abstraction for the child.
     #[must_use]
     pub fn completion_map(&self, parent: SubtaskId, child: SubtaskId) -> MapId {
         let parent = self.subtask(parent);
@@ -377,15 +376,15 @@ impl Catalogue {
         own.map_or(parent.map, |&(_, map)| map)
     }
 
-    /// Number of parameters of each completion function of `parent` for `child`.
+    /// Returns the number of parameters of each completion function of `parent` for `child`.
     #[must_use]
     pub fn completion_width(&self, parent: SubtaskId, child: SubtaskId) -> usize {
         let map = self.completion_map(parent, child);
         self.subtask(parent).blocks() * self.maps[map.index()].width()
     }
 
-    /// Number of features of a subtask's value functions (Thesis Table 4.6): those
-    /// of its map, once per block of a composite.
+    /// Returns the number of features of a subtask's value functions (Thesis Table 4.6): those
+    /// of its map, once for each block.
     #[must_use]
     pub fn width(&self, id: SubtaskId) -> usize {
         let subtask = self.subtask(id);

@@ -1,6 +1,6 @@
-//! Worlds of equal square cells: where these are, for who looks at them.
+//! Worlds of equal square cells.
 //!
-//! Cells are numbered row by row from the upper left; lengths are in cells, y upwards.
+//! Cells are numbered row by row from the upper left. Lengths are in cells, with y upwards.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,7 +11,7 @@ use super::scene::{Move, Reading, Scale, Snapshot, Sweep};
 use super::{MapId, Probe, StateType, StateTypes, SubtaskId};
 use crate::random::Stream;
 
-/// Radius in cells of an agent that is in one.
+/// Radius of an agent in cells.
 pub(super) const RADIUS: f64 = 0.35;
 
 /// A direction to walk in.
@@ -26,13 +26,24 @@ pub(super) enum Direction {
 impl Direction {
     pub(super) const ALL: [Self; 4] = [Self::Up, Self::Down, Self::Right, Self::Left];
 
-    /// The direction of a move, one of the four in the order of [`Self::ALL`].
+    /// Returns the direction of a primitive subtask: its place in `moves`, which have the order of
+    /// [`Self::ALL`].
     pub(super) fn of(moved: SubtaskId, moves: [SubtaskId; 4]) -> Self {
         let place = moves.iter().position(|&known| known == moved);
         Self::ALL[place.unwrap_or(0)]
     }
 
-    /// The other three.
+    /// Returns the direction a quarter turn to the right.
+    pub(super) fn clockwise(self) -> Self {
+        match self {
+            Self::Up => Self::Right,
+            Self::Right => Self::Down,
+            Self::Down => Self::Left,
+            Self::Left => Self::Up,
+        }
+    }
+
+    /// Returns the other three directions.
     pub(super) fn others(self) -> [Self; 3] {
         std::array::from_fn(|i| Self::ALL[(self as usize + 1 + i) % 4])
     }
@@ -46,6 +57,10 @@ pub(super) struct Cells {
 }
 
 impl Cells {
+    pub(super) const fn count(self) -> usize {
+        self.columns * self.rows
+    }
+
     pub(super) fn extent(self) -> [f64; 2] {
         [self.columns as f64, self.rows as f64]
     }
@@ -55,28 +70,25 @@ impl Cells {
         [column as f64 + 0.5, (self.rows - row) as f64 - 0.5]
     }
 
-    /// The cell next to one; `None` at the edge.
+    /// Returns the next cell in a direction; `None` at the edge.
     pub(super) fn neighbour(self, cell: usize, direction: Direction) -> Option<usize> {
         let column = cell % self.columns;
         match direction {
             Direction::Up => cell.checked_sub(self.columns),
-            Direction::Down => {
-                Some(cell + self.columns).filter(|&to| to < self.columns * self.rows)
-            }
+            Direction::Down => Some(cell + self.columns).filter(|&to| to < self.count()),
             Direction::Right => (column + 1 < self.columns).then_some(cell + 1),
             Direction::Left => (column > 0).then(|| cell - 1),
         }
     }
 
-    /// The cell that a point lies in; `None` outside.
+    /// Returns the cell of a point; `None` outside.
     pub(super) fn cell_at(self, [x, y]: [f64; 2]) -> Option<usize> {
         let [width, height] = self.extent();
         let inside = (0.0..width).contains(&x) && (0.0..height).contains(&y);
         inside.then(|| (self.rows - 1 - y as usize) * self.columns + x as usize)
     }
 
-    /// The cells row by row from the lower left, as a [`Sweep`] has
-    /// them, whose scales ascend.
+    /// Returns the cells row by row from the lower left: the scales of a [`Sweep`] ascend.
     pub(super) fn upwards(self) -> impl Iterator<Item = usize> {
         let columns = self.columns;
         (0..self.rows)
@@ -92,7 +104,7 @@ impl Cells {
         scale("y_cells", self.rows)
     }
 
-    /// Where an agent in a cell is.
+    /// Returns the position of an agent in a cell.
     pub(super) fn readings(self, cell: usize) -> Vec<Reading> {
         let names = ["x_cells", "y_cells"].into_iter();
         let readings = names.zip(self.centre(cell)).map(|(name, value)| Reading {
@@ -102,7 +114,7 @@ impl Cells {
         readings.collect()
     }
 
-    /// What an agent looks like that is in a cell, and of which there is no more to say.
+    /// Returns the snapshot of an agent in a cell without any objects.
     pub(super) fn snapshot(self, cell: usize, state_type: StateType) -> Snapshot {
         Snapshot {
             at: self.centre(cell),
@@ -119,7 +131,7 @@ impl Cells {
         }
     }
 
-    /// What agents perceive from cell to cell.
+    /// Returns what agents perceive from cell to cell.
     pub(super) fn sweep<P>(self, percept: impl Fn(usize) -> P) -> Sweep<P> {
         let probe = |cell| Probe {
             label: format!("cell {cell}"),
@@ -136,7 +148,7 @@ impl Cells {
     }
 }
 
-/// One of some cells, all alike; `None` of none.
+/// Returns one of the cells, each equally likely; `None` if there are none.
 pub(super) fn any_of(cells: impl Iterator<Item = usize>, rng: &mut Stream) -> Option<usize> {
     let cells: Vec<_> = cells.collect();
     let last = cells.len().checked_sub(1)?;
@@ -150,7 +162,7 @@ fn scale(name: &str, count: usize) -> Scale {
     }
 }
 
-/// The walls around the whole.
+/// Returns the walls around all cells.
 pub(super) fn outer_walls(cells: Cells) -> [[[f64; 2]; 2]; 4] {
     let [width, height] = cells.extent();
     let corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
@@ -173,7 +185,7 @@ pub(super) fn add_moves(
     }
 }
 
-/// The subtasks that move an agent east, north, west, south.
+/// Returns the moves of subtasks that move the agent east, north, west and south.
 pub(super) fn moves(subtasks: [SubtaskId; 4]) -> Vec<Move> {
     let quarters = subtasks.into_iter().zip(0_u8..);
     let moves = quarters.map(|(subtask, quarter)| Move {

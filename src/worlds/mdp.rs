@@ -1,20 +1,19 @@
-//! Worlds with few states, known exactly: Bellman's equations in place of experience.
+//! Markov decision processes of small worlds, solved by dynamic programming.
 //!
-//! What agents learn by trial and error can be held against these values. Nothing that
-//! learns or evolves looks at them.
+//! Learned values are compared with these exact ones. Learning and evolution never use them.
 
 use super::{MapId, StateType, SubtaskId};
 
-/// Sweeps over all states after which values are taken as they are: those of a policy that
-/// need not come to an end never settle.
+/// Largest number of sweeps over all states. The values of a policy that need not terminate
+/// never converge.
 pub const MAX_SWEEPS: usize = 20_000;
-/// Values are exact when no sweep changes one by more than this.
+/// Values have converged when a sweep changes none by more than this.
 const EXACT: f64 = 1e-12;
 
-/// What can come of an action.
+/// A possible outcome of an action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// How likely it is.
+    /// Its probability.
     pub probability: f64,
     /// The reward.
     pub reward: f64,
@@ -22,29 +21,29 @@ pub struct Outcome {
     pub next: usize,
 }
 
-/// A state of a finite world.
+/// A state of an MDP.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MdpState<P> {
     /// Its type.
     pub state_type: StateType,
-    /// What the agent perceives in it.
+    /// What the agent perceives.
     pub percept: P,
-    /// The probability that a trial starts in it.
+    /// The probability that a trial starts here.
     pub start: f64,
-    /// For each action what can come of it; empty in a terminal state.
+    /// The possible outcomes of each action; empty for a terminal state.
     pub outcomes: Vec<Vec<Outcome>>,
 }
 
-/// A whole world: its states are numbered as the features of its `table` are.
+/// The Markov decision process of a world. States have the numbers of the features of `table`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mdp<P> {
     /// The feature map that tells all states apart.
     pub table: MapId,
-    /// A feature map of Gaussians over all that matters, if the world has one.
+    /// A feature map of Gaussians over the whole state, if the world has one.
     pub gaussian: Option<MapId>,
-    /// The actions: primitive subtasks and the index of the action there.
+    /// The actions: primitive subtasks with the index of the action.
     pub actions: Vec<(SubtaskId, usize)>,
-    /// The states; `None` where no state has this number.
+    /// The states; `None` where a number has no state.
     pub states: Vec<Option<MdpState<P>>>,
 }
 
@@ -52,8 +51,7 @@ pub struct Mdp<P> {
 pub type PolicyTable = Vec<Vec<f64>>;
 
 impl<P> Mdp<P> {
-    /// The optimal values (Thesis Eq. 2.10), by value iteration, and how many sweeps over
-    /// all states these took.
+    /// Returns the optimal values (Thesis Eq. 2.10) by value iteration, and the number of sweeps.
     #[must_use]
     pub fn optimal_values(&self, discount: f64) -> (Vec<f64>, usize) {
         self.iterate(MAX_SWEEPS, |_, state, values| {
@@ -63,9 +61,10 @@ impl<P> Mdp<P> {
         })
     }
 
-    /// The values of a policy (Thesis Eq. 2.8), by at most `sweeps` sweeps over all states,
-    /// and how many these took: if all, the values have not settled and are those of at
-    /// least as many steps.
+    /// Returns the values of a policy (Thesis Eq. 2.8) after at most `sweeps` sweeps over all
+    /// states, and the number of sweeps.
+    ///
+    /// If that is `sweeps`, the values have not converged: they count at least as many steps.
     #[must_use]
     pub fn policy_values(
         &self,
@@ -81,7 +80,7 @@ impl<P> Mdp<P> {
         })
     }
 
-    /// The policy that takes the best actions for these values, equally good ones alike.
+    /// Returns the greedy policy for these values; equally good actions are equally likely.
     #[must_use]
     pub fn best_policy(&self, values: &[f64], discount: f64) -> PolicyTable {
         let best = |state: &MdpState<P>| -> Vec<f64> {
@@ -100,14 +99,14 @@ impl<P> Mdp<P> {
             .collect()
     }
 
-    /// The policy that takes all actions alike.
+    /// Returns the policy in which all actions are equally likely.
     #[must_use]
     pub fn random_policy(&self) -> PolicyTable {
         let share = 1.0 / self.actions.len() as f64;
         vec![vec![share; self.actions.len()]; self.states.len()]
     }
 
-    /// The expected value of the state in which a trial starts.
+    /// Returns the expected value of the start state.
     #[must_use]
     pub fn value_at_start(&self, values: &[f64]) -> f64 {
         let states = self.states.iter().zip(values);
@@ -116,7 +115,7 @@ impl<P> Mdp<P> {
             .sum()
     }
 
-    /// The states that are no holes in the numbering.
+    /// Returns the states with their numbers.
     pub fn existing(&self) -> impl Iterator<Item = (usize, &MdpState<P>)> {
         let states = self.states.iter().enumerate();
         states.filter_map(|(index, state)| Some((index, state.as_ref()?)))

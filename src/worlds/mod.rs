@@ -1,10 +1,4 @@
-//! Where agents act.
-//!
-//! A [`World`] tells what its subtasks are ([`Catalogue`]) and simulates one time
-//! step at a time. It knows nothing of learning: it hands out *inputs*, and says which of
-//! them each subtask looks at, and how ([`FeatureMap`]). Learning and evolution are
-//! generic over the world and compiled for each one, so the interface costs nothing at
-//! run time.
+#![doc = include_str!("README.md")]
 
 #[macro_use]
 mod builder;
@@ -27,7 +21,7 @@ use self::mdp::Mdp;
 use crate::random::Stream;
 use crate::rules::{Check, Problem};
 
-// A new world is a folder, a line here, and a line below.
+// A new world is a folder, a line here and a line below: see README.md.
 pub mod cliff;
 pub mod foraging;
 pub mod four_rooms;
@@ -44,41 +38,40 @@ worlds! {
     Taxi: "taxi", taxi::TaxiSettings;
 }
 
-/// A typical input of a primitive subtask, for looking at what it has learned.
+/// A typical input of a primitive subtask, which shows what the subtask has learned.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe<P> {
-    /// The input in a few characters, for people.
+    /// The input in a few characters.
     pub label: String,
-    /// The readings with their names, which end in their units.
+    /// The readings with their names; a name ends with the unit.
     pub readings: Vec<(String, f64)>,
     /// What the agent perceives.
     pub percept: P,
 }
 
-/// A world: its subtasks, and the simulation of one agent in it.
+/// A world: its subtasks, and the simulation of one agent.
 ///
-/// Implementations are immutable while a run lasts; everything that changes is in
-/// [`World::State`], of which every individual has its own.
+/// A world does not change while a run lasts. Everything that changes is in
+/// [`World::State`]; every individual has its own.
 pub trait World: Send + Sync {
-    /// Where a trial starts.
+    /// The start of a trial.
     type Start: Clone + Send + Sync;
     /// The changing state of one agent and its surroundings.
     type State: Clone + Send;
-    /// What the agent perceives: input values, addressed by [`Axis::input`] where they
-    /// are scaled to [0, 1], by [`Index::input`] where they are whole numbers.
+    /// What the agent perceives: inputs in [0, 1], to which [`Axis::input`] refers, and whole
+    /// numbers, to which [`Index::input`] refers.
     type Percept: Copy + AsRef<[f32]> + Send + Sync;
 
-    /// The subtasks that hierarchies are made of.
+    /// Returns the subtasks that hierarchies are made of.
     fn catalogue(&self) -> &Catalogue;
 
     /// Draws the start of a trial.
     fn draw_start(&self, rng: &mut Stream) -> Self::Start;
 
-    /// The state at the beginning of a trial.
+    /// Returns the state at the start of a trial.
     fn begin(&self, start: &Self::Start, rng: &mut Stream) -> Self::State;
 
-    /// Executes one action of a primitive subtask for one time step and returns
-    /// the subtask's reward for it.
+    /// Executes one action of a primitive subtask for one time step, and returns the reward.
     fn step(
         &self,
         state: &mut Self::State,
@@ -87,38 +80,41 @@ pub trait World: Send + Sync {
         rng: &mut Stream,
     ) -> f32;
 
-    /// The type of a state; [`Catalogue::terminal`] when the task is done.
+    /// Returns the type of a state: [`Catalogue::terminal`] if the task is done.
     fn state_type(&self, state: &Self::State) -> StateType;
 
-    /// What the agent perceives in a state.
+    /// Returns what the agent perceives in a state.
     fn percept(&self, state: &Self::State) -> Self::Percept;
 
-    /// A random state of the given type, as the agent perceives it; `None` where
-    /// none is found in reasonable time.
+    /// Returns what the agent perceives in a random state of the given type.
+    ///
+    /// `None` if rejection sampling finds no such state.
     fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<Self::Percept>;
 
-    /// Typical inputs of a primitive subtask.
+    /// Returns typical inputs of a primitive subtask.
     fn probes(&self, primitive: SubtaskId) -> Vec<Probe<Self::Percept>> {
         let _ = primitive;
         Vec::new()
     }
 
-    /// How a primitive subtask is trained before evolution starts; `None` where it is
-    /// not, and learns with each individual.
+    /// Returns how a primitive subtask is trained before evolution starts.
+    ///
+    /// `None` if it is not trained: each individual then learns it.
     fn training(&self, primitive: SubtaskId) -> Option<&TrainingSettings> {
         let _ = primitive;
         None
     }
 
-    /// The first state of a training episode; `None` where the world has no state
-    /// that the subtask could be trained from.
+    /// Returns the first state of a training episode.
+    ///
+    /// `None` if the world has no state in which this subtask can be trained.
     fn begin_training(&self, primitive: SubtaskId, rng: &mut Stream) -> Option<Self::State> {
         let _ = (primitive, rng);
         None
     }
 
-    /// Whether a training episode goes on after the step that led from `before` to
-    /// `after`; `after` may be prepared for it.
+    /// Returns whether a training episode continues after a step from `before` to `after`. It
+    /// may change `after` for the next step.
     fn training_goes_on(
         &self,
         primitive: SubtaskId,
@@ -129,12 +125,14 @@ pub trait World: Send + Sync {
         false
     }
 
-    /// A hierarchy that a person would make, as text.
+    /// Returns a hierarchy that a person would make, as text.
     fn hand_made(&self) -> Option<&str> {
         None
     }
 
-    /// The whole world, exactly; `None` where it has too many states for that.
+    /// Returns the Markov decision process of the whole world.
+    ///
+    /// `None` if the world has too many states.
     fn mdp(&self) -> Option<Mdp<Self::Percept>> {
         None
     }

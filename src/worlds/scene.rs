@@ -1,5 +1,5 @@
-//! What there is to see of a world: the same few shapes for every world, so that who
-//! draws one needs to know none.
+//! What a world looks like, in the same few shapes for every world, so that drawing code knows
+//! none of them.
 //!
 //! Positions are in the world's own unit, x to the right and y upwards; headings are in
 //! radians, 0 along +x, counter-clockwise.
@@ -7,137 +7,136 @@
 use super::{Probe, StateType, SubtaskId, World};
 use crate::random::Stream;
 
-/// What does not change while an agent acts.
+/// The part of a world that does not change while an agent acts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenery {
     /// Extent along x and y from the origin.
     pub extent: [f64; 2],
     /// The unit of lengths: `mm`, `cells`.
     pub unit: String,
-    /// Columns and rows, where the world consists of equal cells.
+    /// Columns and rows of a world of equal cells.
     pub grid: Option<[usize; 2]>,
-    /// Walls from one end to the other.
+    /// Walls, each from one end to the other.
     pub walls: Vec<[[f64; 2]; 2]>,
-    /// Places that have a name or a meaning and never move.
+    /// Places with a name or a meaning, which never move.
     pub places: Vec<Mark>,
-    /// Primitive subtasks that move the agent by a cell.
+    /// Primitive subtasks that move the agent by one cell.
     pub moves: Vec<Move>,
-    /// What a time step lasts in seconds, where time is real.
+    /// Length of a time step in seconds, in worlds with real time.
     pub time_step_s: Option<f64>,
 }
 
-/// A primitive subtask that moves the agent by a cell, if nothing is in the way.
+/// A primitive subtask that moves the agent by one cell if nothing is in the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Move {
     /// The subtask.
     pub subtask: SubtaskId,
-    /// Where it moves the agent.
+    /// The direction of the move.
     pub heading: f64,
 }
 
-/// What a mark means to the agent.
+/// The meaning of a mark for the agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Where the task ends: a nest, a destination.
+    /// The place where the task ends: a nest, a destination.
     Goal,
-    /// What is to be found or picked up: a battery, a passenger.
+    /// An object to find or pick up: a battery, a passenger.
     Object,
-    /// What is to be kept away from: a cliff.
+    /// A danger: a cliff.
     Hazard,
     /// A place with a name.
     Landmark,
 }
 
-/// Something at a place.
+/// An object or a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// What it means.
+    /// Its meaning.
     pub role: Role,
-    /// A short name for people, such as `nest`, `battery 2`, `R`.
+    /// A short name, such as `nest`, `battery 2`, `R`.
     pub label: String,
     /// Its centre.
     pub at: [f64; 2],
 }
 
-/// What an agent reads off one of its sensors.
+/// The reading of a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// What is read; ends in the unit, such as `angle_deg`.
+    /// The name, which ends with the unit: `angle_deg`.
     pub name: String,
-    /// The value; `None` where there is nothing to read, such as the angle to a target
-    /// that is not seen.
+    /// The value; `None` if there is none, such as the angle to a target out of sight.
     pub value: Option<f64>,
 }
 
-/// A sector in which an agent sees, symmetric about its heading.
+/// The field of view of an agent: a sector, symmetric about the heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Half its opening, in radians.
+    /// Half its angle in radians.
     pub half_angle: f64,
-    /// How far it reaches.
+    /// Its range.
     pub range: f64,
 }
 
-/// One state of an agent and its surroundings.
+/// What a state of an agent and its surroundings looks like.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
     /// Centre of the agent.
     pub at: [f64; 2],
     /// Its radius.
     pub radius: f64,
-    /// Where it heads, if it heads anywhere.
+    /// Its heading, if agents of this world have one.
     pub heading: Option<f64>,
-    /// Label of what it carries.
+    /// The label of the object that it carries.
     pub carries: Option<String>,
-    /// What can move or go: batteries that are left, a passenger.
+    /// Objects that can move or disappear: the batteries left, a passenger.
     pub marks: Vec<Mark>,
-    /// Where it sees.
+    /// Its field of view.
     pub view: Option<View>,
-    /// The place of the target that it sees.
+    /// The position of the target that it sees.
     pub sees: Option<[f64; 2]>,
-    /// Proximity rays, each from the agent to what it measured.
+    /// Proximity rays, each from the body to the measured distance.
     pub rays: Vec<[[f64; 2]; 2]>,
-    /// What the sensors read.
+    /// The readings of the sensors.
     pub readings: Vec<Reading>,
     /// The type of the state; the catalogue's terminal type when the task is done.
     pub state_type: StateType,
-    /// Which of the [`variants`](Scenic::variants) is the case, by index; the last one when
-    /// the task is done.
+    /// The index of the present one of the [`variants`](Scenic::variants): the last if the task
+    /// is done.
     pub variant: usize,
 }
 
-/// Inputs along which learned values are drawn, one after the other or in rows.
+/// Inputs for which learned values are drawn, in one row or several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep<P> {
-    /// From column to column.
+    /// The scale from column to column.
     pub across: Scale,
-    /// From row to row, if there is more than one row.
+    /// The scale from row to row, if there are several rows.
     pub down: Option<Scale>,
     /// The inputs, row by row.
     pub probes: Vec<Probe<P>>,
 }
 
-/// What changes along one direction of a [`Sweep`].
+/// The scale along one direction of a [`Sweep`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Scale {
     /// A quantity.
     Quantity {
-        /// Its name; ends in the unit.
+        /// Its name, which ends with the unit.
         name: String,
         /// Its values, ascending.
         values: Vec<f64>,
     },
     /// Typical cases.
     Cases {
-        /// What they are cases of.
+        /// Their common name.
         name: String,
-        /// One label a case.
+        /// A label for each case.
         labels: Vec<String>,
     },
 }
 
 impl Scale {
-    /// What changes.
+    /// Returns the name.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -145,7 +144,7 @@ impl Scale {
         }
     }
 
-    /// How many values or cases there are.
+    /// Returns the number of values or cases.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -154,13 +153,13 @@ impl Scale {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no values or cases.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// A value or case in words.
+    /// Returns a value or case in words.
     #[must_use]
     pub fn label(&self, index: usize) -> String {
         match self {
@@ -171,23 +170,25 @@ impl Scale {
     }
 }
 
-/// A world that can be looked at.
+/// A world that can be drawn.
 pub trait Scenic: World {
-    /// What does not change.
+    /// Returns the part that does not change.
     fn scenery(&self) -> Scenery;
 
-    /// What a state looks like.
+    /// Returns what a state looks like.
     fn snapshot(&self, state: &Self::State) -> Snapshot;
 
-    /// Where the agent is: [`Snapshot::at`] without the rest.
+    /// Returns the position of the agent: [`Snapshot::at`] without the rest.
     fn position(&self, state: &Self::State) -> [f64; 2];
 
-    /// What can be the case besides place and heading, in a few words each, such as
-    /// `empty-handed` and `carrying`; at least one.
+    /// Returns the situations of an agent apart from position and heading, in a few words each,
+    /// such as `empty-handed` and `carrying`: at least one.
     fn variants(&self) -> Vec<String>;
 
-    /// The state of an agent at a place with a heading, in one of the [`variants`]
-    /// (by index); `None` where the agent cannot be.
+    /// Returns the state of an agent at a position, with a heading and the index of one of the
+    /// [`variants`].
+    ///
+    /// `None` where an agent cannot be.
     ///
     /// [`variants`]: Scenic::variants
     fn state_at(
@@ -198,8 +199,8 @@ pub trait Scenic: World {
         rng: &mut Stream,
     ) -> Option<Self::State>;
 
-    /// Inputs along which the values of a subtask are drawn, as they are in states of
-    /// the given type. By default the subtask's [`World::probes`].
+    /// Returns the inputs for which the values of a subtask are drawn in states of the given
+    /// type: by default its [`World::probes`].
     fn sweeps(&self, subtask: SubtaskId, state_type: StateType) -> Vec<Sweep<Self::Percept>> {
         let _ = state_type;
         if self.catalogue().subtask(subtask).is_composite() {

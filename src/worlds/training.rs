@@ -9,13 +9,13 @@ use crate::rules::Check;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingSettings {
-    /// Time steps in all.
+    /// Total number of time steps.
     pub steps: u32,
-    /// Time steps after which an episode ends and the agent is put elsewhere.
+    /// Time steps after which an episode ends and the next one starts elsewhere.
     pub episode_steps: u32,
-    /// How actions are chosen while training.
+    /// How actions are chosen.
     pub exploration: Exploration,
-    /// With `softmax`: the temperature is multiplied by this at the end of each episode.
+    /// The factor on the temperature of `softmax` at the end of each episode.
     pub temperature_decrease: f64,
 }
 
@@ -28,12 +28,12 @@ impl TrainingSettings {
     }
 }
 
-/// Choice of actions while a primitive subtask is trained.
+/// How actions are chosen while a primitive subtask is trained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Exploration {
-    /// All actions alike.
+    /// All actions are equally likely.
     Uniform,
-    /// Softmax with a temperature that falls from episode to episode.
+    /// Softmax, with a temperature that decreases from episode to episode.
     Softmax,
 }

@@ -49,7 +49,7 @@ pub(super) fn catalogue(cells: Cells, settings: &CliffSettings) -> Catalogue {
     builder.composite(CROSS, "walk to above the goal", CELL, [ABOVE], [LAST], 2);
     builder.composite(DESCEND, "walk down to the goal", CELL, [LAST], [AT_GOAL], 2);
     add_moves(&mut builder, ACTIONS, CELL, all);
-    let values = cells.columns * cells.rows;
+    let values = cells.count();
     builder.map(CELL, FeatureKind::Table(vec![Index { input: 0, values }]));
     let axis = |input, centres: usize| Axis {
         input,

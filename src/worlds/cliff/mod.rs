@@ -49,16 +49,12 @@ impl CliffWorld {
         })
     }
 
-    fn count(&self) -> usize {
-        self.cells.columns * self.cells.rows
-    }
-
     fn goal(&self) -> usize {
-        self.count() - 1
+        self.cells.count() - 1
     }
 
     fn start(&self) -> usize {
-        self.count() - self.cells.columns
+        self.cells.count() - self.cells.columns
     }
 
     fn is_cliff(&self, cell: usize) -> bool {
@@ -165,7 +161,7 @@ impl World for CliffWorld {
     }
 
     fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<Percept> {
-        let cells = (0..self.count())
+        let cells = (0..self.cells.count())
             .filter(|cell| !self.is_cliff(*cell) && self.state_type(cell) == state_type);
         any_of(cells, rng).map(|cell| self.percept(&cell))
     }
@@ -178,8 +174,8 @@ impl World for CliffWorld {
     }
 
     fn mdp(&self) -> Option<Mdp<Percept>> {
-        let states =
-            (0..self.count()).map(|cell| (!self.is_cliff(cell)).then(|| self.mdp_state(cell)));
+        let states = (0..self.cells.count())
+            .map(|cell| (!self.is_cliff(cell)).then(|| self.mdp_state(cell)));
         Some(Mdp {
             table: CELL,
             gaussian: Some(POSITION),

@@ -1,4 +1,4 @@
-//! What there is to see of the cliff walk.
+//! What the cliff walk looks like.
 
 use super::catalogue::{DOWN, LEFT, RIGHT, UP};
 use super::{CliffWorld, Percept};
@@ -18,7 +18,7 @@ impl Scenic for CliffWorld {
             mark(Role::Landmark, "S", self.start()),
             mark(Role::Goal, "G", self.goal()),
         ];
-        let cliff = (0..self.count()).filter(|&cell| self.is_cliff(cell));
+        let cliff = (0..self.cells.count()).filter(|&cell| self.is_cliff(cell));
         places.extend(cliff.map(|cell| mark(Role::Hazard, "cliff", cell)));
         Scenery {
             extent: self.cells.extent(),

@@ -1,10 +1,11 @@
 //! The arena: walls, batteries, nest, and which walls matter where.
 //!
-//! The arena is divided into cells. For each cell the walls that a robot in it can
-//! touch in one step, that its proximity sensors can reach, and that can stand
-//! between it and each target are listed once; a time step then looks at those few
-//! walls instead of all. The lists are supersets, so no wall is missed; but a ray that hits a listed wall beyond the
-//! range of its sensor draws a number for its noise, so the bits of a run depend on them.
+//! The arena is divided into cells. Each cell has lists of the walls that a robot in it can touch
+//! in one step, that its proximity sensors can reach, and that can stand between it and each
+//! target. A time step looks at these few walls instead of all.
+//!
+//! The lists are supersets, so no wall is missed. The bits of a run depend on them nevertheless:
+//! a ray that hits a listed wall beyond the range of its sensor draws a number for its noise.
 
 use std::ops::Range;
 
@@ -12,8 +13,8 @@ use nalgebra::{Point2, Vector2};
 
 use super::ArenaSettings;
 
-/// Cells along the longer side. More cells give shorter lists and a longer start. Another
-/// number gives other bits.
+/// Cells along the longer side. More cells give shorter lists and a longer start. Another number
+/// changes the bits of every run.
 const CELLS: usize = 50;
 
 /// A straight wall.
@@ -30,7 +31,7 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// The wall `[x1, y1, x2, y2]`.
+    /// Makes the wall `[x1, y1, x2, y2]`.
     pub(super) fn new([x1, y1, x2, y2]: [f64; 4]) -> Self {
         Self::between(Point2::new(x1, y1), Point2::new(x2, y2))
     }
@@ -45,19 +46,19 @@ impl Wall {
         }
     }
 
-    /// The other end.
+    /// Returns the other end.
     #[must_use]
     pub fn end(&self) -> Point2<f64> {
         self.start + self.span
     }
 
-    /// The point of the wall that is nearest to `point`.
+    /// Returns the point of the wall nearest to `point`.
     pub(super) fn nearest(&self, point: Point2<f64>) -> Point2<f64> {
         let along = (point - self.start).dot(&self.shares);
         self.start + self.span * along.clamp(0.0, 1.0)
     }
 
-    /// Whether the line from `a` to `b` meets the wall.
+    /// Returns whether the line from `a` to `b` meets the wall.
     pub(super) fn crosses(&self, a: Point2<f64>, b: Point2<f64>) -> bool {
         let (line, offset) = (b - a, self.start - a);
         let determinant = line.perp(&self.span);
@@ -69,7 +70,7 @@ impl Wall {
         determinant != 0.0 && inside(on_line) && inside(on_wall)
     }
 
-    /// Distance between the wall and the line from `a` to `b`.
+    /// Returns the distance between the wall and the line from `a` to `b`.
     fn distance_to_line(&self, a: Point2<f64>, b: Point2<f64>) -> f64 {
         if self.crosses(a, b) {
             return 0.0;
@@ -87,12 +88,12 @@ impl Wall {
     }
 }
 
-/// How far the robot reaches, in millimetres from its centre.
+/// Distances in millimetres from the centre of the robot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// What it can touch in one time step.
+    /// The farthest wall that it can touch in one time step.
     pub(super) touch: f64,
-    /// What can change a proximity reading.
+    /// The farthest wall that can change a proximity reading.
     pub(super) proximity: f64,
 }
 
@@ -111,9 +112,9 @@ pub struct Arena {
     rows: usize,
     cell_side: f64,
     cells_per_mm: f64,
-    /// Indices of walls; the cells' lists one after the other.
+    /// Indices of walls: the lists of all cells one after the other.
     listed: Vec<u16>,
-    /// For each cell the ends of its lists: touch, proximity, each target.
+    /// The ends of the lists of each cell: touch, proximity, each target.
     list_ends: Vec<u32>,
 }
 
@@ -155,29 +156,29 @@ impl Arena {
         arena
     }
 
-    /// Centre of a target: the batteries by index, then the nest.
+    /// Returns the centre of a target: the batteries by index, then the nest.
     #[must_use]
     pub fn target(&self, target: usize) -> Point2<f64> {
         self.batteries.get(target).copied().unwrap_or(self.nest)
     }
 
-    /// The index of the nest among the targets.
+    /// Returns the index of the nest among the targets.
     #[must_use]
     pub fn nest_index(&self) -> usize {
         self.batteries.len()
     }
 
-    /// Walls that a robot at `position` can touch in one time step.
+    /// Returns the walls that a robot at `position` can touch in one time step.
     pub(super) fn touchable(&self, position: Point2<f64>) -> impl Iterator<Item = &Wall> + Clone {
         self.list(position, 0)
     }
 
-    /// Walls that can change a proximity reading of a robot at `position`.
+    /// Returns the walls that can change a proximity reading of a robot at `position`.
     pub(super) fn near(&self, position: Point2<f64>) -> impl Iterator<Item = &Wall> + Clone {
         self.list(position, 1)
     }
 
-    /// Whether no wall stands between `position` and a target.
+    /// Returns whether no wall stands between `position` and a target.
     pub(super) fn in_sight(&self, position: Point2<f64>, target: usize) -> bool {
         let centre = self.target(target);
         !self
@@ -185,7 +186,7 @@ impl Arena {
             .any(|wall| wall.crosses(position, centre))
     }
 
-    /// Whether a disc of this radius has room at `position`.
+    /// Returns whether a disc of this radius fits at `position`.
     pub(super) fn is_free(&self, position: Point2<f64>, radius: f64) -> bool {
         self.touchable(position)
             .all(|wall| (position - wall.nearest(position)).norm() >= radius)
@@ -253,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn fences_are_seen_through_at_their_slits_only() {
+    fn a_fence_blocks_sight_except_at_its_slits() {
         let arena = arena();
         // Battery 1 at (2050, 600) behind the fence x = 1700, a slit at y = 600.
         assert!(arena.in_sight(Point2::new(1500.0, 600.0), 0));
@@ -263,7 +264,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn lists_leave_out_nothing_that_matters(x in 0.0..3000.0_f64, y in 0.0..3000.0_f64) {
+        fn lists_contain_every_wall_that_matters(x in 0.0..3000.0_f64, y in 0.0..3000.0_f64) {
             let arena = arena();
             let position = Point2::new(x, y);
             let listed: Vec<_> = arena.near(position).copied().collect();

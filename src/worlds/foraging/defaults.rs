@@ -1,6 +1,6 @@
-//! Every default of the foraging task as a named constant with its source.
+//! The defaults of the foraging task with their sources.
 //!
-//! Where the thesis is silent or says a thing twice, the constant says who decided.
+//! Where the thesis gives no value, the constant says so.
 
 /// Length of a time step in seconds, Thesis Table 4.5.
 pub const TIME_STEP_S: f64 = 0.1;
@@ -10,9 +10,9 @@ pub const ARENA_SIDE_MM: f64 = 3000.0;
 pub const ROBOT_RADIUS_MM: f64 = 75.0;
 /// Distance between the wheels in millimetres; the thesis does not print it.
 pub const WHEEL_BASE_MM: f64 = 150.0;
-/// A visible battery whose centre is this near to the robot's centre is captured.
+/// Distance of capture in millimetres, from centre to centre.
 pub const CAPTURE_DISTANCE_MM: f64 = 160.0;
-/// A visible nest whose centre is this near to a carrying robot's centre is reached.
+/// Distance of delivery in millimetres, from centre to centre.
 pub const DELIVERY_DISTANCE_MM: f64 = 200.0;
 /// Directions of the proximity sensors, left to right, Thesis 4.1.
 pub const PROXIMITY_ANGLES_DEG: [f64; 5] = [90.0, 30.0, 0.0, -30.0, -90.0];
@@ -61,8 +61,8 @@ pub const TURN_ACTIONS: [[f64; 2]; 4] = [
 pub const AVOID_REWARDS: [f64; 5] = [-0.5, -0.5, -0.75, -0.75, -0.875];
 /// Rewards of Wander's actions, Thesis Eq. 4.1.
 pub const WANDER_REWARDS: [f64; 5] = [-0.25, -0.45, -0.45, -0.67, -0.67];
-/// Reward of a failing primitive subtask - a wall at the smallest proximity
-/// reading, or the target out of sight -, Thesis Eq. 4.1.
+/// Reward of a failing primitive subtask, Thesis Eq. 4.1: it fails if a proximity reading is the
+/// smallest possible, or if its target is out of sight.
 pub const FAILURE_REWARD: f64 = -1.0;
 /// Approach: the reward is minus the target's angle over this, Thesis Eq. 4.1.
 pub const APPROACH_REWARD_DIVISOR_DEG: f64 = 60.0;
@@ -84,13 +84,13 @@ pub const TURN_CENTRES: usize = 7;
 /// Training steps of each primitive subtask. The thesis says only that they are
 /// trained; at this number the greedy actions have the shape of its Figure 4.3.
 pub const TRAINING_STEPS: u32 = 100_000;
-/// Steps of a training episode of Avoid and Wander. Episodes of five steps hardly
-/// ever press against a wall, and Wander then pushes into corners for ever.
+/// Steps of a training episode of Avoid and Wander. In episodes of five steps the robot rarely
+/// touches a wall, and Wander then learns to push into corners.
 pub const EXPLORING_EPISODE_STEPS: u32 = 100;
-/// Steps of a training episode of Approach and Turn, whose targets are soon lost.
+/// Steps of a training episode of Approach and Turn, which soon lose their targets.
 pub const TARGET_EPISODE_STEPS: u32 = 5;
-/// Temperature decrease factor of Avoid and Wander, Thesis 4.4. It acts only when
-/// they are trained with `softmax` exploration.
+/// Temperature decrease factor of Avoid and Wander, Thesis 4.4. It has an effect only with
+/// `softmax` exploration.
 pub const EXPLORING_TEMPERATURE_DECREASE: f64 = 0.9995;
 /// Temperature decrease factor of Approach and Turn, Thesis 4.4.
 pub const TARGET_TEMPERATURE_DECREASE: f64 = 0.995;

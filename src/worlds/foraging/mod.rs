@@ -1,34 +1,5 @@
-//! The foraging task (Thesis 4.1 to 4.3): find a battery, capture it, bring it home.
-//!
-//! # Arena
-//! A closed rectangle with straight inner walls; a wall blocks bodies, proximity
-//! rays and sight. Batteries and the nest block nothing. Units are millimetres,
-//! seconds and radians; heading 0 points along +x, positive angles are
-//! counter-clockwise, to the robot's left.
-//!
-//! # Robot
-//! A disc with two driven wheels. An action is a pair (right, left) of wheel speeds
-//! held for one time step and followed exactly along its arc; the disc slides along
-//! walls and never enters one, while the heading always follows the arc.
-//!
-//! # Readings
-//! Five proximity rays measured from the body's surface, and the angle and distance
-//! of the target: the closest visible battery while empty-handed, the nest while
-//! carrying. A reading r becomes r (1 + u), u uniform in plus or minus the noise,
-//! and is then clipped to its range. Visibility, collision, capture and delivery are
-//! judged on the true geometry.
-//!
-//! # State types (Thesis Table 4.1)
-//! 1: empty-handed, no battery visible. 2: empty-handed, battery visible.
-//! 3: carrying, nest not visible. 4: carrying, nest visible.
-//!
-//! # Start, reward, end
-//! A trial starts at a random free pose, empty-handed, all batteries in place. A
-//! visible battery within the capture distance is captured; a carrying robot whose
-//! visible nest is within the delivery distance has delivered, and the trial ends.
-//! Delivery needs a step that began carrying. Rewards are those of Thesis Eq. 4.1 on
-//! the readings after the action; for the step that captures or delivers, on the
-//! target just reached.
+//! The foraging task (Thesis 4.1 to 4.3). Its specification is on the page of
+//! [the worlds](super).
 
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
@@ -63,23 +34,22 @@ use super::{Catalogue, Probe, Settings, StateType, SubtaskId, TrainingSettings, 
 use crate::random::{Purpose, Stream, stream};
 use crate::rules::{Check, Problem};
 
-/// Draws after which a search for a pose gives up. In a usable arena a search takes
-/// a handful of draws.
+/// Largest number of draws in a search for a pose. In a usable arena a few are enough.
 const MAX_DRAWS: usize = 20_000;
 
-/// Where the robot is and where it heads.
+/// Position and heading of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Centre of the body in millimetres.
     pub position: Point2<f64>,
-    /// Unit vector.
+    /// The heading as a unit vector.
     pub heading: Vector2<f64>,
 }
 
-/// What the robot does in the task.
+/// The progress of the robot in its task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
-    /// It looks for a battery.
+    /// It searches for a battery.
     EmptyHanded,
     /// It carries the battery with this index.
     Carrying(usize),
@@ -87,12 +57,12 @@ pub enum Task {
     Delivered(usize),
 }
 
-/// The state of one robot and its readings.
+/// The state of a robot, and its readings.
 #[derive(Clone, Copy, Debug)]
 pub struct ForagingState {
-    /// Where the robot is.
+    /// Position and heading.
     pub pose: Pose,
-    /// What it does.
+    /// Its progress.
     pub task: Task,
     /// Proximity readings in millimetres, in the order of the scenario's sensors.
     pub proximity_mm: [f32; PROXIMITY_SENSORS],
@@ -103,9 +73,9 @@ pub struct ForagingState {
 /// The reward of a primitive subtask (Thesis Eq. 4.1).
 #[derive(Clone, Debug)]
 enum Reward {
-    /// Of the action, unless a wall is too near: Avoid, Wander.
+    /// It depends on the action, unless a wall is too near: Avoid, Wander.
     Movement { actions: Vec<f32>, failure: f32 },
-    /// Of the angle to the target: Approach battery, Approach nest, Turn.
+    /// It depends on the angle to the target: Approach battery, Approach nest, Turn.
     Target {
         offset: f32,
         divisor_deg: f32,
@@ -113,7 +83,7 @@ enum Reward {
     },
 }
 
-/// A primitive subtask: what its actions do and how they are rewarded.
+/// The actions of a primitive subtask, their rewards, and its training.
 #[derive(Clone, Debug)]
 struct Primitive {
     arcs: Vec<Arc>,
@@ -133,15 +103,15 @@ pub struct ForagingWorld {
     time_step_s: f64,
     /// Avoid, Wander, Approach battery, Approach nest, Turn.
     primitives: [Primitive; 5],
-    /// A pose known to be free, for arenas so crowded that chance finds none.
+    /// A free pose, for a crowded arena in which a search fails.
     some_pose: Pose,
 }
 
 impl ForagingWorld {
-    /// The world of settings that obey the rules.
+    /// Makes the world of settings that obey the rules.
     ///
     /// # Errors
-    /// When the arena has no room for the robot.
+    /// Fails if the arena has no room for the robot.
     pub fn new(settings: &ForagingSettings) -> Result<Self, Problem> {
         let primitives = primitives(settings);
         let longest = primitives
@@ -176,13 +146,13 @@ impl ForagingWorld {
         Ok(world)
     }
 
-    /// Walls, batteries and nest.
+    /// Returns walls, batteries and nest.
     #[must_use]
     pub fn arena(&self) -> &Arena {
         &self.arena
     }
 
-    /// Radius of the robot's body in millimetres.
+    /// Returns the radius of the robot's body in millimetres.
     #[must_use]
     pub fn robot_radius_mm(&self) -> f64 {
         self.radius
@@ -200,7 +170,7 @@ impl ForagingWorld {
         })
     }
 
-    /// The target that counts in this task, if it is seen, and its index.
+    /// Returns the index and the true position of the target of this task, if it is visible.
     fn see_target(&self, pose: &Pose, task: Task) -> Option<(usize, Sighting)> {
         let see = |target| {
             let sighting = self
@@ -276,7 +246,7 @@ impl ForagingWorld {
         }
     }
 
-    /// Readings scaled to [0, 1] over their ranges; 0 for a target that is not seen.
+    /// Scales readings to [0, 1]. Without a visible target its inputs are 0.
     fn inputs(
         &self,
         proximity_mm: &[f32; PROXIMITY_SENSORS],
@@ -467,7 +437,7 @@ impl World for ForagingWorld {
         after: &mut ForagingState,
     ) -> bool {
         if Self::is_target_seeking(primitive) {
-            // Over when the target is lost, or captured, or reached.
+            // The episode ends when the target is lost, captured or reached.
             return after.task == before.task && after.target.is_some();
         }
         after.task = Task::EmptyHanded;

@@ -1,27 +1,27 @@
-//! How the robot moves: exact arcs, and sliding along walls.
+//! Motion of the robot: exact arcs, and sliding along walls.
 
 use nalgebra::{Point2, Vector2};
 
 use super::arena::Wall;
 
-/// A disc this near to a wall, in millimetres, touches it.
+/// Distance in millimetres between a disc and a wall at which they touch.
 const CONTACT_TOLERANCE_MM: f64 = 1e-6;
-/// Motion into a wall below this share of the whole is rounding, not motion.
+/// Motion into a wall below this share of the whole motion is rounding error.
 const INWARD_TOLERANCE: f64 = 1e-12;
-/// Contacts in one time step after which the rest of the motion is dropped.
+/// Number of contacts in one time step after which the rest of the motion is dropped.
 const MAX_CONTACTS: usize = 4;
 
-/// What an action does in one time step: the exact arc of a two-wheeled robot.
+/// The exact arc of a two-wheeled robot in one time step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arc {
-    /// Displacement in the frame of the robot at the start, heading along +x.
+    /// Displacement in the frame of the robot at the start, with the heading along +x.
     chord: Vector2<f64>,
     /// Cosine and sine of the change of heading.
     turn: Vector2<f64>,
 }
 
 impl Arc {
-    /// The arc of wheel speeds `[right, left]` in mm/s held for `duration` seconds.
+    /// Computes the arc of wheel speeds `[right, left]` in mm/s held for `duration` seconds.
     pub(super) fn new([right, left]: [f64; 2], wheel_base_mm: f64, duration: f64) -> Self {
         let forward = (right + left) / 2.0 * duration;
         let angle = (right - left) / wheel_base_mm * duration;
@@ -38,25 +38,25 @@ impl Arc {
         }
     }
 
-    /// The displacement of a robot with this heading (a unit vector).
+    /// Returns the displacement of a robot with this heading (a unit vector).
     pub(super) fn displacement(&self, heading: Vector2<f64>) -> Vector2<f64> {
         rotate(self.chord, heading)
     }
 
-    /// The heading afterwards.
+    /// Returns the heading after the arc.
     pub(super) fn turned(&self, heading: Vector2<f64>) -> Vector2<f64> {
         let turned = rotate(self.turn, heading);
-        // One Newton step to length 1: rounding never adds up over a trial.
+        // One Newton step towards length 1, so that rounding errors do not add up over a trial.
         turned * (1.5 - 0.5 * turned.norm_squared())
     }
 
-    /// Length of the displacement in millimetres.
+    /// Returns the length of the displacement in millimetres.
     pub(super) fn length(&self) -> f64 {
         self.chord.norm()
     }
 }
 
-/// `vector` in the frame whose x axis is the unit vector `heading`.
+/// Rotates `vector` from the frame whose x axis is the unit vector `heading`.
 pub(super) fn rotate(vector: Vector2<f64>, heading: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(
         vector.x * heading.x - vector.y * heading.y,
@@ -64,12 +64,12 @@ pub(super) fn rotate(vector: Vector2<f64>, heading: Vector2<f64>) -> Vector2<f64
     )
 }
 
-/// Moves a disc from `position` by `motion` and returns where it ends.
+/// Moves a disc from `position` by `motion`, and returns its position afterwards.
 ///
-/// It moves up to the first contact with a wall; there the component of the
-/// remaining motion into the wall is removed and the rest carried out. A disc in
-/// contact is stopped only against inward motion, so it slides along walls, turns
-/// corners, and comes to rest in a slit narrower than itself.
+/// The disc moves up to the first contact with a wall. There the component of the remaining
+/// motion into the wall is removed, and the disc moves on. A wall in contact stops inward motion
+/// only: the disc slides along walls, turns corners, and comes to rest in a slit narrower than
+/// itself.
 pub(super) fn slide<'w>(
     mut position: Point2<f64>,
     mut motion: Vector2<f64>,
@@ -102,8 +102,8 @@ pub(super) fn slide<'w>(
     position
 }
 
-/// The share of `motion`, of this length, after which the disc first touches `wall`
-/// and would enter it.
+/// Returns the share of `motion`, of this length, after which the disc first touches `wall` and
+/// would enter it.
 #[inline(always)]
 fn contact(
     position: Point2<f64>,
@@ -122,7 +122,7 @@ fn contact(
         let tolerance = INWARD_TOLERANCE * length * distance_squared.sqrt();
         return (inward < -tolerance).then_some(0.0);
     }
-    // The disc touches the wall where its centre enters the wall's capsule.
+    // The disc touches the wall when its centre enters the capsule of this radius around the wall.
     [
         enter_side(position, motion, radius, wall),
         enter_circle(position - wall.start, motion, radius),
@@ -137,7 +137,8 @@ fn square(number: f64) -> f64 {
     number * number
 }
 
-/// When a centre outside the band around the wall's line enters it beside the wall.
+/// Returns the time at which a centre outside the band around the wall's line enters it beside
+/// the wall.
 fn enter_side(
     position: Point2<f64>,
     motion: Vector2<f64>,
@@ -156,7 +157,7 @@ fn enter_side(
     (time <= 1.0 && (0.0..=wall.length).contains(&foot)).then_some(time)
 }
 
-/// When a centre at `offset` from a circle's centre, outside of it, enters it.
+/// Returns the time at which a point outside a circle, at `offset` from its centre, enters it.
 fn enter_circle(offset: Vector2<f64>, motion: Vector2<f64>, radius: f64) -> Option<f64> {
     let speed_squared = motion.norm_squared();
     let inward = motion.dot(&offset);

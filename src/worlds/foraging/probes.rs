@@ -1,16 +1,20 @@
-//! Typical inputs of the primitive subtasks: the abscissae of Thesis Figure 4.3.
+//! Inputs for which learned values are shown: the abscissae of Thesis Figure 4.3, and others.
 
 use super::catalogue::{INPUTS, PROXIMITY_SENSORS};
-use super::{ForagingWorld, TargetReading};
-use crate::worlds::Probe;
+use super::{BATTERY_VISIBLE, ForagingWorld, NEST_VISIBLE, TargetReading};
+use crate::worlds::scene::{Scale, Sweep};
+use crate::worlds::{Probe, StateType};
 
-/// Angles at which target-seeking subtasks are probed, on either side of zero.
+/// Number of probed angles on either side of zero.
 const ANGLE_STEPS: i16 = 6;
-/// A distance for subtasks that do not look at it, in millimetres.
+/// A distance in millimetres, where values do not depend on it or it is not varied.
 const SOME_DISTANCE_MM: f32 = 1000.0;
+/// Numbers of angles and distances of a sweep.
+const ANGLES: usize = 25;
+const DISTANCES: usize = 8;
 
-/// Which sensors read their smallest value, in the scenario's order; the others read
-/// their largest.
+/// Typical surroundings: which sensors, in the scenario's order, read their smallest value. The
+/// others read their largest.
 const BLOCKED: [(&str, [bool; PROXIMITY_SENSORS]); 6] = [
     ("open", [false; PROXIMITY_SENSORS]),
     ("wall left", [true, true, false, false, false]),
@@ -21,6 +25,7 @@ const BLOCKED: [(&str, [bool; PROXIMITY_SENSORS]); 6] = [
 ];
 
 impl ForagingWorld {
+    /// Returns targets at several angles, in the open.
     pub(super) fn angle_probes(&self) -> Vec<Probe<[f32; INPUTS]>> {
         let step = self.sensors.vision_half_angle_deg / f32::from(ANGLE_STEPS);
         let far = [self.sensors.proximity_range[1]; PROXIMITY_SENSORS];
@@ -40,7 +45,7 @@ impl ForagingWorld {
             .collect()
     }
 
-    /// Typical surroundings, with this reading of a target.
+    /// Returns typical surroundings with this reading of a target.
     pub(super) fn proximity_probes(
         &self,
         target: Option<TargetReading>,
@@ -60,5 +65,81 @@ impl ForagingWorld {
                 }
             })
             .collect()
+    }
+
+    /// Returns typical surroundings, with a target straight ahead in states that see one.
+    pub(super) fn pattern_sweep(&self, state_type: StateType) -> Sweep<[f32; INPUTS]> {
+        let ahead = TargetReading {
+            angle_deg: 0.0,
+            distance_mm: SOME_DISTANCE_MM,
+        };
+        let sees_target = matches!(state_type, BATTERY_VISIBLE | NEST_VISIBLE);
+        let probes = self.proximity_probes(sees_target.then_some(ahead));
+        Sweep {
+            across: Scale::Cases {
+                name: String::from("surroundings"),
+                labels: probes.iter().map(|probe| probe.label.clone()).collect(),
+            },
+            down: None,
+            probes,
+        }
+    }
+
+    /// Returns targets at many angles, in the open.
+    pub(super) fn angle_sweep(&self) -> Sweep<[f32; INPUTS]> {
+        let angles = self.angles();
+        let probes = angles
+            .iter()
+            .map(|&angle| self.target_probe(angle, SOME_DISTANCE_MM));
+        Sweep {
+            probes: probes.collect(),
+            across: scale("angle_deg", &angles),
+            down: None,
+        }
+    }
+
+    /// Returns targets at several angles and distances, in the open.
+    pub(super) fn target_sweep(&self) -> Sweep<[f32; INPUTS]> {
+        let angles = self.angles();
+        let step = self.sensors.vision_range as f32 / DISTANCES as f32;
+        let distances: Vec<_> = (1..=DISTANCES).map(|i| i as f32 * step).collect();
+        let row = |&distance: &f32| {
+            let probe = move |&angle: &f32| self.target_probe(angle, distance);
+            angles.iter().map(probe).collect::<Vec<_>>()
+        };
+        Sweep {
+            probes: distances.iter().flat_map(row).collect(),
+            across: scale("angle_deg", &angles),
+            down: Some(scale("distance_mm", &distances)),
+        }
+    }
+
+    fn angles(&self) -> Vec<f32> {
+        let half = self.sensors.vision_half_angle_deg;
+        let step = 2.0 * half / (ANGLES - 1) as f32;
+        (0..ANGLES).map(|i| i as f32 * step - half).collect()
+    }
+
+    fn target_probe(&self, angle_deg: f32, distance_mm: f32) -> Probe<[f32; INPUTS]> {
+        let far = [self.sensors.proximity_range[1]; PROXIMITY_SENSORS];
+        let target = TargetReading {
+            angle_deg,
+            distance_mm,
+        };
+        Probe {
+            label: format!("{angle_deg:+.0} deg, {distance_mm:.0} mm"),
+            readings: vec![
+                (String::from("angle_deg"), f64::from(angle_deg)),
+                (String::from("distance_mm"), f64::from(distance_mm)),
+            ],
+            percept: self.inputs(&far, Some(target)),
+        }
+    }
+}
+
+fn scale(name: &str, values: &[f32]) -> Scale {
+    Scale::Quantity {
+        name: name.to_owned(),
+        values: values.iter().copied().map(f64::from).collect(),
     }
 }

@@ -1,4 +1,4 @@
-//! Distances along rays, all rays at once.
+//! Distances along the proximity rays, computed for all rays at once.
 
 use nalgebra::{Point2, Vector2};
 use pulp::{Arch, Simd, WithSimd};
@@ -6,7 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::arena::Wall;
 use super::catalogue::PROXIMITY_SENSORS;
 
-/// Rays in whole vectors; those beyond the sensors have no direction and hit nothing.
+/// Number of rays in whole vectors. Rays beyond the sensors have no direction and hit nothing.
 const LANES: usize = PROXIMITY_SENSORS.next_multiple_of(4);
 
 /// The directions of the proximity rays.
@@ -28,15 +28,14 @@ impl Rays {
         rays
     }
 
-    /// How far each ray from `origin` goes to the first wall; infinity if it meets none.
+    /// Returns the distance from `origin` along each ray to the first wall, or infinity.
     pub(super) fn cast<'w>(
         &self,
         origin: Point2<f64>,
         walls: impl Iterator<Item = &'w Wall>,
     ) -> [f64; PROXIMITY_SENSORS] {
-        let rays = self;
         Arch::new().dispatch(Cast {
-            rays,
+            rays: self,
             origin,
             walls,
         })

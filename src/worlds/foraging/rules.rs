@@ -1,5 +1,4 @@
-//! The rules that the settings of the foraging task obey, one small function for each
-//! part of them.
+//! The rules for the settings of the foraging task, one function for each part.
 
 use super::settings::{
     ArenaSettings, FeatureSettings, FenceSettings, ForagingSettings, MovementSettings,
@@ -9,7 +8,7 @@ use crate::rules::Check;
 
 /// Wheel speed limit of the Cyber Rodent in mm/s, Thesis 4.2.
 const WHEEL_SPEED_LIMIT: f64 = 1300.0;
-/// Bounds what a hostile file can make the program allocate or compute.
+// These bound the memory and work that a hostile file can cause.
 const MAX_WALLS: usize = 2000;
 const MAX_BATTERIES: usize = 64;
 const MAX_SLITS: usize = 200;
@@ -111,18 +110,20 @@ fn fence(check: &mut Check, fence: &FenceSettings, size: [f64; 2]) {
 }
 
 fn robot(check: &mut Check, robot: &RobotSettings) {
-    check.range("radius_mm", robot.radius_mm, 1.0..=1000.0);
-    check.range("wheel_base_mm", robot.wheel_base_mm, 1.0..=2000.0);
-    check.range(
-        "capture_distance_mm",
-        robot.capture_distance_mm,
-        1.0..=20_000.0,
-    );
-    check.range(
-        "delivery_distance_mm",
-        robot.delivery_distance_mm,
-        1.0..=20_000.0,
-    );
+    check.ranges([
+        ("radius_mm", robot.radius_mm, 1.0..=1000.0),
+        ("wheel_base_mm", robot.wheel_base_mm, 1.0..=2000.0),
+        (
+            "capture_distance_mm",
+            robot.capture_distance_mm,
+            1.0..=20_000.0,
+        ),
+        (
+            "delivery_distance_mm",
+            robot.delivery_distance_mm,
+            1.0..=20_000.0,
+        ),
+    ]);
 }
 
 fn sensors(check: &mut Check, sensors: &SensorSettings) {
@@ -138,13 +139,15 @@ fn sensors(check: &mut Check, sensors: &SensorSettings) {
         format!("[{low}, {high}]"),
         "smallest below largest",
     );
-    check.range(
-        "vision_half_angle_deg",
-        sensors.vision_half_angle_deg,
-        1.0..=89.0,
-    );
-    check.range("vision_range_mm", sensors.vision_range_mm, 1.0..=50_000.0);
-    check.range("noise", sensors.noise, 0.0..=0.9);
+    check.ranges([
+        (
+            "vision_half_angle_deg",
+            sensors.vision_half_angle_deg,
+            1.0..=89.0,
+        ),
+        ("vision_range_mm", sensors.vision_range_mm, 1.0..=50_000.0),
+        ("noise", sensors.noise, 0.0..=0.9),
+    ]);
 }
 
 fn features(check: &mut Check, features: &FeatureSettings) {

@@ -1,4 +1,4 @@
-//! What there is to see of the foraging task.
+//! What the foraging task looks like.
 
 use nalgebra::{Point2, Vector2};
 
@@ -6,20 +6,14 @@ use super::catalogue::INPUTS;
 use super::motion::rotate;
 use super::{
     APPROACH_BATTERY, APPROACH_NEST, BATTERY_VISIBLE, ForagingState, ForagingWorld, NEST_VISIBLE,
-    Pose, TURN, TargetReading, Task,
+    Pose, TURN, Task,
 };
 use crate::random::Stream;
-use crate::worlds::scene::{Mark, Reading, Role, Scale, Scenery, Scenic, Snapshot, Sweep, View};
-use crate::worlds::{Kind, Probe, StateType, SubtaskId, World};
+use crate::worlds::scene::{Mark, Reading, Role, Scenery, Scenic, Snapshot, Sweep, View};
+use crate::worlds::{Kind, StateType, SubtaskId, World};
 
 /// Variants of [`Scenic::state_at`].
 const VARIANTS: [&str; 2] = ["empty-handed", "carrying"];
-
-/// Angles and distances of a sweep.
-const ANGLES: usize = 25;
-const DISTANCES: usize = 8;
-/// A distance for sweeps that do not vary it, in millimetres.
-const SOME_DISTANCE_MM: f32 = 1000.0;
 
 impl Scenic for ForagingWorld {
     fn scenery(&self) -> Scenery {
@@ -101,9 +95,10 @@ impl Scenic for ForagingWorld {
         if !inside || !self.arena.is_free(position, self.radius) {
             return None;
         }
-        let task = match variant {
-            0 => Task::EmptyHanded,
-            _ => Task::Carrying(0),
+        let task = if variant == 0 {
+            Task::EmptyHanded
+        } else {
+            Task::Carrying(0)
         };
         let (sin, cos) = libm::sincos(heading);
         let pose = Pose {
@@ -128,14 +123,14 @@ impl Scenic for ForagingWorld {
 }
 
 impl ForagingWorld {
-    /// Whether the values of a subtask depend on the target.
+    /// Returns whether the values of a subtask depend on the target.
     fn looks_at_target(&self, subtask: SubtaskId) -> bool {
         let map = self.catalogue.subtask(subtask).map;
         let axes = self.catalogue.maps[map.index()].axes();
         axes.iter().any(|axis| axis.input == super::ANGLE)
     }
 
-    /// Each proximity ray from the body's surface to where its reading puts the wall.
+    /// Returns each proximity ray, from the body's surface to the measured distance.
     fn measured_rays(&self, state: &ForagingState) -> Vec<[[f64; 2]; 2]> {
         let directions = self.sensors.rays.iter().zip(state.proximity_mm);
         directions
@@ -154,7 +149,7 @@ impl ForagingWorld {
         };
         let angles = self.sensors.rays.map(|ray| {
             let angle = libm::atan2(ray.y, ray.x).to_degrees();
-            // A rounding error would show as -0.
+            // Without rounding, an error would show as -0.
             angle.round() as i64
         });
         let proximity = angles.iter().zip(state.proximity_mm);
@@ -172,85 +167,10 @@ impl ForagingWorld {
         ));
         readings
     }
-
-    /// Typical surroundings; with a target straight ahead in states that see one.
-    fn pattern_sweep(&self, state_type: StateType) -> Sweep<[f32; INPUTS]> {
-        let ahead = TargetReading {
-            angle_deg: 0.0,
-            distance_mm: SOME_DISTANCE_MM,
-        };
-        let sees_target = matches!(state_type, BATTERY_VISIBLE | NEST_VISIBLE);
-        let probes = self.proximity_probes(sees_target.then_some(ahead));
-        Sweep {
-            across: Scale::Cases {
-                name: String::from("surroundings"),
-                labels: probes.iter().map(|probe| probe.label.clone()).collect(),
-            },
-            down: None,
-            probes,
-        }
-    }
-
-    fn angle_sweep(&self) -> Sweep<[f32; INPUTS]> {
-        let angles = self.angles();
-        let probes = angles
-            .iter()
-            .map(|&angle| self.target_probe(angle, SOME_DISTANCE_MM));
-        Sweep {
-            probes: probes.collect(),
-            across: scale("angle_deg", &angles),
-            down: None,
-        }
-    }
-
-    /// Angle and distance of the target, in the open.
-    fn target_sweep(&self) -> Sweep<[f32; INPUTS]> {
-        let angles = self.angles();
-        let step = self.sensors.vision_range as f32 / DISTANCES as f32;
-        let distances: Vec<_> = (1..=DISTANCES).map(|i| i as f32 * step).collect();
-        let row = |&distance: &f32| {
-            let probe = move |&angle: &f32| self.target_probe(angle, distance);
-            angles.iter().map(probe).collect::<Vec<_>>()
-        };
-        Sweep {
-            probes: distances.iter().flat_map(row).collect(),
-            across: scale("angle_deg", &angles),
-            down: Some(scale("distance_mm", &distances)),
-        }
-    }
-
-    fn angles(&self) -> Vec<f32> {
-        let half = self.sensors.vision_half_angle_deg;
-        let step = 2.0 * half / (ANGLES - 1) as f32;
-        (0..ANGLES).map(|i| i as f32 * step - half).collect()
-    }
-
-    fn target_probe(&self, angle_deg: f32, distance_mm: f32) -> Probe<[f32; INPUTS]> {
-        let far = [self.sensors.proximity_range[1]; super::PROXIMITY_SENSORS];
-        let target = TargetReading {
-            angle_deg,
-            distance_mm,
-        };
-        Probe {
-            label: format!("{angle_deg:+.0} deg, {distance_mm:.0} mm"),
-            readings: vec![
-                (String::from("angle_deg"), f64::from(angle_deg)),
-                (String::from("distance_mm"), f64::from(distance_mm)),
-            ],
-            percept: self.inputs(&far, Some(target)),
-        }
-    }
 }
 
 fn battery_label(index: usize) -> String {
     format!("battery {}", index + 1)
-}
-
-fn scale(name: &str, values: &[f32]) -> Scale {
-    Scale::Quantity {
-        name: name.to_owned(),
-        values: values.iter().copied().map(f64::from).collect(),
-    }
 }
 
 #[cfg(test)]
@@ -265,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn snapshots_show_what_the_state_says() {
+    fn snapshots_agree_with_their_states() {
         let world = world();
         let mut rng = stream(1, 0, 0, Purpose::Trials);
         let (mut seen, mut carried) = (0, 0);
@@ -305,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_can_be_in_walls_or_outside() {
+    fn no_state_is_in_a_wall_or_outside() {
         let world = world();
         let mut rng = stream(1, 0, 0, Purpose::Trials);
         for at in [

@@ -1,4 +1,4 @@
-//! What the robot senses: five proximity rays, and the nearest target in view.
+//! The sensors of the robot: five proximity rays, and vision.
 
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
@@ -19,7 +19,7 @@ pub struct TargetReading {
     pub distance_mm: f32,
 }
 
-/// The true place of a target relative to the robot.
+/// The true position of a target relative to the robot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sighting {
     pub(super) distance: f64,
@@ -56,14 +56,14 @@ impl Sensors {
         }
     }
 
-    /// The largest distance from the robot's centre at which a wall can change a
-    /// proximity reading: noise comes before clipping.
+    /// Returns the largest distance from the robot's centre at which a wall can change a proximity
+    /// reading. Noise comes before clipping.
     pub(super) fn proximity_reach(settings: &SensorSettings, body_radius: f64) -> f64 {
         body_radius + settings.proximity_range_mm[1] / (1.0 - settings.noise)
     }
 
-    /// Proximity readings in millimetres from the body's surface, in the order of
-    /// the scenario's sensors.
+    /// Returns the proximity readings in millimetres from the body's surface, in the order of the
+    /// scenario's sensors.
     pub(super) fn proximity(
         &self,
         arena: &Arena,
@@ -83,7 +83,7 @@ impl Sensors {
         })
     }
 
-    /// Where a target is, if the robot sees it.
+    /// Returns the true position of a target if the robot sees it.
     pub(super) fn see(
         &self,
         arena: &Arena,
@@ -102,7 +102,7 @@ impl Sensors {
         })
     }
 
-    /// The noisy reading of a target that is seen.
+    /// Returns the noisy reading of a visible target.
     pub(super) fn read(&self, sighting: &Sighting, rng: &mut Stream) -> TargetReading {
         let limit = self.vision_half_angle_deg;
         let angle = libm::atan2f(sighting.relative.y as f32, sighting.relative.x as f32);

@@ -1,4 +1,4 @@
-//! The foraging task of thesis chapter 4 as a scenario describes it.
+//! The settings of the foraging task.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use crate::worlds::{Exploration, TrainingSettings};
 pub struct ForagingSettings {
     /// Walls, batteries and the nest.
     pub arena: ArenaSettings,
-    /// Body of the robot and the distances at which it captures and delivers.
+    /// Body of the robot, and the distances at which it captures and delivers.
     #[serde(default)]
     pub robot: RobotSettings,
     /// Proximity sensors, vision and their noise.
@@ -36,11 +36,11 @@ fn time_step() -> f64 {
     d::TIME_STEP_S
 }
 
-/// A closed rectangle from the origin to `size_mm`, with what is in it.
+/// A closed rectangle from the origin to `size_mm`: walls, batteries and nest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ArenaSettings {
-    /// Extent along x and y in millimetres; the four outer walls stand on its edges.
+    /// Extent along x and y. The four outer walls stand on its edges.
     #[serde(default = "arena_size")]
     pub size_mm: [f64; 2],
     /// Inner walls, each a segment `[x1, y1, x2, y2]`.
@@ -59,8 +59,7 @@ fn arena_size() -> [f64; 2] {
     [d::ARENA_SIDE_MM; 2]
 }
 
-/// A straight wall with slits narrower than the robot: it can be seen through but
-/// not passed.
+/// A straight wall with slits. The robot sees through every slit, but fits only through wide ones.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FenceSettings {
@@ -75,7 +74,7 @@ pub struct FenceSettings {
 }
 
 impl FenceSettings {
-    /// Distance between the two ends in millimetres.
+    /// Returns the distance between the ends in millimetres.
     #[must_use]
     pub fn length_mm(&self) -> f64 {
         let [x1, y1] = self.from_mm;
@@ -83,7 +82,7 @@ impl FenceSettings {
         ((x2 - x1) * (x2 - x1) + (y2 - y1) * (y2 - y1)).sqrt()
     }
 
-    /// The solid pieces between the slits, as walls `[x1, y1, x2, y2]`.
+    /// Returns the solid pieces between the slits, as walls `[x1, y1, x2, y2]`.
     #[must_use]
     pub fn pieces(&self) -> Vec<[f64; 4]> {
         let length = self.length_mm();
@@ -116,9 +115,9 @@ pub struct RobotSettings {
     pub radius_mm: f64,
     /// Distance between the wheels.
     pub wheel_base_mm: f64,
-    /// A visible battery nearer than this is captured.
+    /// Distance between the centres at which a visible battery is captured.
     pub capture_distance_mm: f64,
-    /// A visible nest nearer than this is reached by a carrying robot.
+    /// Distance between the centres at which a carrying robot reaches a visible nest.
     pub delivery_distance_mm: f64,
 }
 
@@ -133,7 +132,7 @@ impl Default for RobotSettings {
     }
 }
 
-/// What the robot senses (Thesis 4.1).
+/// The sensors of the robot (Thesis 4.1).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SensorSettings {
@@ -146,8 +145,8 @@ pub struct SensorSettings {
     pub vision_half_angle_deg: f64,
     /// A target is visible within this distance of the robot's centre.
     pub vision_range_mm: f64,
-    /// Relative noise: a reading is multiplied by 1 + u, u uniform in plus or minus
-    /// this, and then clipped to its range.
+    /// Relative noise: a reading is multiplied by 1 + u, u uniform between minus and plus this
+    /// value, and then clipped to its range.
     pub noise: f64,
 }
 
@@ -218,7 +217,7 @@ pub struct MovementSettings {
     pub actions_mm_per_s: Vec<[f64; 2]>,
     /// Reward of each action while no wall is too near.
     pub rewards: Vec<f64>,
-    /// Reward when the smallest proximity reading is at the lower end of its range.
+    /// Reward if any proximity reading is the smallest possible.
     pub failure_reward: f64,
 }
 
@@ -241,17 +240,17 @@ pub struct TargetSettings {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FeatureSettings {
-    /// Per proximity sensor; their product over five sensors is the width of Find
-    /// battery, Find nest, Avoid and Wander, and of each state type's block in
-    /// Capture, Deliver and Root.
+    /// Centres for each proximity sensor. Their product over five sensors is the width of Find
+    /// battery, Find nest, Avoid and Wander, and of each state type's block in Capture, Deliver
+    /// and Root.
     pub proximity_centres: usize,
-    /// Over the angle, in Visible battery and Visible nest.
+    /// Centres over the angle in Visible battery and Visible nest.
     pub angle_centres: usize,
-    /// Over the distance, in Visible battery and Visible nest.
+    /// Centres over the distance in Visible battery and Visible nest.
     pub distance_centres: usize,
-    /// Over the angle, in Approach battery and Approach nest.
+    /// Centres over the angle in Approach battery and Approach nest.
     pub approach_centres: usize,
-    /// Over the angle, in Turn.
+    /// Centres over the angle in Turn.
     pub turn_centres: usize,
     /// What "the variance of the RBFs is sqrt(2) times their spacing" (Thesis 4.4) means.
     pub rbf_width: RbfWidth,
@@ -281,7 +280,7 @@ pub enum RbfWidth {
     Variance,
 }
 
-/// Training of the primitive subtasks, each alone, in the scenario's own arena.
+/// Training of each primitive subtask, alone and in the scenario's own arena.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PrimitiveTraining {
@@ -325,7 +324,7 @@ impl Default for PrimitiveTraining {
 pub(super) mod tests {
     use super::*;
 
-    /// The settings of a shipped environment.
+    /// Returns the settings of a shipped environment.
     pub(in super::super) fn environment(number: usize) -> ForagingSettings {
         let scenarios = concat!(env!("CARGO_MANIFEST_DIR"), "/scenarios");
         let text = std::fs::read_to_string(format!("{scenarios}/environment-{number}.json"));

@@ -48,7 +48,7 @@ pub(super) const ACTIONS: [SubtaskId; 4] = [UP, DOWN, RIGHT, LEFT];
 /// Number of inputs: the cell.
 pub(super) const INPUTS: usize = 1;
 
-/// Every way, with every action.
+/// Every composite subtask with every action.
 pub(super) const HAND_MADE: &str = "(Root (NorthWestToNorth Up Down Right Left) \
      (NorthWestToWest Up Down Right Left) (NorthEastToNorth Up Down Right Left) \
      (NorthEastToEast Up Down Right Left) (SouthWestToWest Up Down Right Left) \

@@ -4,8 +4,8 @@ use crate::rules::Problem;
 use crate::worlds::StateType;
 use crate::worlds::grid::{Cells, Direction};
 
-/// The house within its outer walls (Sutton, Precup and Singh 1999, Figure 2): a letter a
-/// cell, `#` for a wall. Rooms are lower-case, hallways upper-case letters.
+/// The house within its outer walls (Sutton, Precup and Singh 1999, Figure 2): one letter for each
+/// cell. `#` is a wall; rooms are lower-case, hallways upper-case letters.
 const PLAN: [&str; 11] = [
     "aaaaa#bbbbb",
     "aaaaa#bbbbb",
@@ -26,8 +26,8 @@ pub(super) const SHAPE: Cells = Cells {
     rows: 11,
 };
 
-/// The number of cells, walls included.
-pub(super) const CELLS: usize = SHAPE.columns * SHAPE.rows;
+/// Number of cells, walls included.
+pub(super) const CELLS: usize = SHAPE.count();
 
 /// A room or a hallway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub(super) enum Place {
 }
 
 impl Place {
-    /// In the order of their state types.
+    /// All places in the order of their state types.
     pub(super) const ALL: [Self; 8] = [
         Self::NorthWest,
         Self::NorthEast,
@@ -55,12 +55,12 @@ impl Place {
         Self::South,
     ];
 
-    /// The type of the states in it.
+    /// Returns the type of states in the place.
     pub(super) const fn state_type(self) -> StateType {
         StateType(self as u8)
     }
 
-    /// The two places that it borders on: the hallways of a room, the rooms of a hallway.
+    /// Returns the two adjacent places: the hallways of a room, the rooms of a hallway.
     pub(super) const fn neighbours(self) -> [Self; 2] {
         match self {
             Self::NorthWest => [Self::North, Self::West],
@@ -83,10 +83,10 @@ impl Place {
     }
 }
 
-/// The house, ready to walk in.
+/// The house cell by cell.
 #[derive(Clone, Debug)]
 pub(super) struct House {
-    /// For each cell where it is; `None` in a wall.
+    /// The place of each cell; `None` for a wall.
     places: Vec<Option<Place>>,
 }
 
@@ -98,32 +98,32 @@ impl House {
         }
     }
 
-    /// The number of the goal's cell. The problem's place is below the settings.
+    /// Returns the number of the goal's cell.
     pub(super) fn goal(&self, [column, row]: [usize; 2]) -> Result<usize, Problem> {
         let inside = column < SHAPE.columns && row < SHAPE.rows;
         let cell = inside.then(|| row * SHAPE.columns + column);
         cell.filter(|&cell| self.is_free(cell)).ok_or_else(|| {
-            let allowed = "column and row of a cell that is no wall, 0 to 10 each";
+            let allowed = "column and row of a cell that is not a wall, 0 to 10 each";
             Problem::new("goal_cell", format!("[{column}, {row}]"), allowed)
         })
     }
 
-    /// Whether the cell is not in a wall.
+    /// Returns whether the cell is not a wall.
     pub(super) fn is_free(&self, cell: usize) -> bool {
         self.places[cell].is_some()
     }
 
-    /// The cells that are not in walls.
+    /// Returns the cells that are not walls.
     pub(super) fn cells(&self) -> impl Iterator<Item = usize> {
         (0..CELLS).filter(|&cell| self.is_free(cell))
     }
 
-    /// The room or hallway of a cell; nobody is in a wall.
+    /// Returns the place of a free cell.
     pub(super) fn place(&self, cell: usize) -> Place {
         self.places[cell].unwrap_or(Place::NorthWest)
     }
 
-    /// The cell that a move leads to.
+    /// Returns the cell that a move leads to.
     pub(super) fn to(&self, cell: usize, direction: Direction) -> usize {
         let to = SHAPE.neighbour(cell, direction);
         to.filter(|&to| self.is_free(to)).unwrap_or(cell)
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn who_leaves_a_place_is_in_a_neighbour_of_it() {
+    fn a_move_stays_in_its_place_or_leads_to_a_neighbour() {
         let house = House::new();
         for cell in house.cells() {
             for direction in Direction::ALL {

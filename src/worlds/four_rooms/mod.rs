@@ -19,23 +19,22 @@ use crate::rules::{Check, Problem};
 
 /// Probability of a slip, Sutton, Precup and Singh 1999, section 3.
 const SLIP: f64 = 1.0 / 3.0;
-/// A cell of the south-eastern room that is no subtask's goal but the last one's.
+/// A cell of the south-eastern room, which no subtask but `ToGoal` has as its goal.
 const GOAL_CELL: [usize; 2] = [8, 8];
-/// Reward of every step: see the module's description.
+/// Reward of every step: see the page of the worlds.
 const STEP_REWARD: f64 = -1.0;
 
-/// A house of four rooms with hallways between them, and a goal somewhere in it.
+/// A house of four rooms with hallways between them, and a goal in one cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FourRoomsSettings {
     /// Column and row of the goal, from 0 at the upper left, within the outer walls.
     pub goal_cell: [usize; 2],
-    /// Probability with which a move goes into one of the three other directions, a third
-    /// of it into each.
+    /// Probability that a move goes into one of the three other directions, each equally likely.
     pub slip: f64,
     /// Reward of every step that does not reach the goal.
     pub step_reward: f64,
-    /// Reward of the step that does.
+    /// Reward of the step that reaches it.
     pub goal_reward: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What there is to see of the four rooms.
+//! What the four rooms look like.
 
 use super::catalogue::{DOWN, LEFT, RIGHT, UP};
 use super::house::{CELLS, SHAPE};
@@ -52,7 +52,7 @@ impl Scenic for FourRoomsWorld {
 }
 
 impl FourRoomsWorld {
-    /// The sides that a cell which is a wall shows to cells that are none.
+    /// Returns the sides of a wall cell that face free cells.
     fn faces(&self, wall: usize) -> impl Iterator<Item = [[f64; 2]; 2]> {
         let [x, y] = SHAPE.centre(wall);
         let side = move |direction| match direction {

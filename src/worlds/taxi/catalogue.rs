@@ -44,6 +44,8 @@ numbered! {
     }
 }
 
+/// The moves, in the order of [`Direction::ALL`](crate::worlds::grid::Direction::ALL).
+pub(super) const MOVES: [SubtaskId; 4] = [NORTH, SOUTH, EAST, WEST];
 /// The primitive subtasks.
 pub(super) const ACTIONS: [SubtaskId; 6] = [NORTH, SOUTH, EAST, WEST, PICKUP, PUTDOWN];
 
@@ -51,9 +53,9 @@ pub(super) const ACTIONS: [SubtaskId; 6] = [NORTH, SOUTH, EAST, WEST, PICKUP, PU
 /// he can be picked up, whether he can be put down.
 pub(super) const INPUTS: usize = 6;
 
-/// The number of places where a passenger can be.
+/// Returns the number of places of a passenger.
 pub(super) fn passenger_places(city: &City, settings: &TaxiSettings) -> usize {
-    // Whether he can still change his mind belongs to the state where he ever can.
+    // The state also says whether he may yet change his mind, if he ever may.
     let fickle = usize::from(settings.change_of_mind > 0.0);
     city.stands.len() + 1 + fickle
 }
@@ -91,7 +93,7 @@ pub(super) fn catalogue(city: &City, settings: &TaxiSettings) -> Catalogue {
 
 fn add_maps(b: &mut CatalogueBuilder, city: &City, settings: &TaxiSettings) {
     let index = |input, values| Index { input, values };
-    let cell = index(0, city.cells());
+    let cell = index(0, city.cells.count());
     let passenger = index(1, passenger_places(city, settings));
     let destination = index(2, city.stands.len());
     let target = index(3, city.stands.len());
@@ -113,11 +115,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_of_values_are_those_of_dietterichs_abstraction() {
+    fn table_sizes_are_those_of_dietterich() {
         let settings = TaxiSettings::default();
         let city = City::read(&settings.map).unwrap();
         let catalogue = catalogue(&city, &settings);
-        // Sources and destinations; the passenger's place of the riding adds to the 16.
+        // 16 pairs of source and destination, and 4 destinations of a riding passenger.
         assert_eq!(catalogue.completion_width(ROOT, GET), 20);
         assert_eq!(catalogue.completion_width(GET, NAVIGATE_TO_PASSENGER), 4);
         assert_eq!(catalogue.completion_width(GET, PICKUP), 100);

@@ -6,16 +6,15 @@ use crate::worlds::mdp::{Mdp, MdpState, Outcome};
 use crate::worlds::{SubtaskId, World};
 
 impl TaxiWorld {
-    /// All states with all that can come of every action.
+    /// Returns all states with the outcomes of every action.
     ///
-    /// The end of a trial has no number of its own: it is the last state, after those of
-    /// the table.
+    /// The end of a trial has no feature of its own in the table. It is the last state.
     pub(super) fn as_mdp(&self) -> Mdp<Percept> {
         let stands = self.city.stands.len();
         let places = passenger_places(&self.city, &self.settings);
-        let starts = (self.city.cells() * stands * stands) as f64;
-        let mut states = Vec::with_capacity(self.city.cells() * places * stands + 1);
-        for taxi in 0..self.city.cells() {
+        let starts = (self.city.cells.count() * stands * stands) as f64;
+        let mut states = Vec::with_capacity(self.city.cells.count() * places * stands + 1);
+        for taxi in 0..self.city.cells.count() {
             for place in 0..places {
                 for destination in 0..stands {
                     let passenger = match place {
@@ -73,7 +72,7 @@ impl TaxiWorld {
         }
     }
 
-    /// The number of a state: its feature in the table.
+    /// Returns the number of a state: its feature in the table.
     fn number(&self, state: &TaxiState) -> usize {
         let stands = self.city.stands.len();
         let places = passenger_places(&self.city, &self.settings);
@@ -81,12 +80,12 @@ impl TaxiWorld {
             Passenger::Waiting(stand) => usize::from(stand),
             Passenger::Riding => stands,
             Passenger::Boarded => stands + 1,
-            Passenger::Delivered => return self.city.cells() * places * stands,
+            Passenger::Delivered => return self.city.cells.count() * places * stands,
         };
         (usize::from(state.taxi) * places + place) * stands + usize::from(state.destination)
     }
 
-    /// All that chance can decide, with its probability.
+    /// Returns all random parts of a step with their probabilities.
     fn chances(&self, state: &TaxiState, primitive: SubtaskId) -> Vec<(f64, Chance)> {
         if matches!(primitive, PICKUP | PUTDOWN) {
             return vec![(1.0, Chance::NONE)];

@@ -10,44 +10,44 @@ mod settings;
 use rand::RngExt;
 
 use self::catalogue::{
-    AT_DESTINATION, AT_PASSENGER, DELIVERED, EAST, INPUTS, PICKUP, PUTDOWN, RIDING, SOUTH, WAITING,
-    WEST,
+    AT_DESTINATION, AT_PASSENGER, DELIVERED, INPUTS, MOVES, PICKUP, PUTDOWN, RIDING, WAITING,
 };
-use self::city::{City, Direction};
+use self::city::City;
 pub use self::settings::TaxiSettings;
+use super::grid::Direction;
 use super::mdp::Mdp;
 use super::{Catalogue, Settings, StateType, SubtaskId, World};
 use crate::random::Stream;
 use crate::rules::{Check, Problem};
 
-/// States drawn before none counts as to be had.
+/// Rejection-sampling attempts before a state type counts as unreachable.
 const MAX_DRAWS: usize = 10_000;
 
-/// Where the passenger is.
+/// The place of the passenger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Passenger {
-    /// At a stand, by its place in the map's order.
+    /// At a stand, numbered in the order of the map.
     Waiting(u8),
-    /// In the taxi, which is still where he boarded it, and he may change his mind.
+    /// In the taxi, which is still in the cell of the pickup: he may yet change his mind.
     Boarded,
-    /// In the taxi, for good.
+    /// In the taxi, with a final destination.
     Riding,
-    /// Where he wanted to go.
+    /// At his destination.
     Delivered,
 }
 
-/// Taxi, passenger and destination; also where a trial starts.
+/// Taxi, passenger and destination. It is also the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TaxiState {
     /// Cell of the taxi, counted row by row from the north-west.
     pub taxi: u16,
-    /// Where the passenger is.
+    /// The passenger.
     pub passenger: Passenger,
-    /// The stand where he wants to go.
+    /// The stand that is his destination.
     pub destination: u8,
 }
 
-/// What the agent perceives: whole numbers, addressed by the catalogue's tables.
+/// What the agent perceives: whole numbers, the inputs of the catalogue's tables.
 pub type Percept = [f32; INPUTS];
 
 /// The taxi world.
@@ -58,12 +58,11 @@ pub struct TaxiWorld {
     settings: TaxiSettings,
 }
 
-/// What chance decides in a step.
+/// The random part of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Chance {
     slip: Slip,
-    /// Where the passenger wants to go if he changes his mind: the number of the stand
-    /// among the others.
+    /// The new destination if the passenger changes his mind: its number among the other stands.
     whim: Option<u8>,
 }
 
@@ -82,10 +81,10 @@ impl Chance {
 }
 
 impl TaxiWorld {
-    /// The world that a scenario describes.
+    /// Makes the world of settings that obey the rules.
     ///
     /// # Errors
-    /// When the map is not that of a city.
+    /// Fails if the map is not that of a city.
     pub fn new(settings: &TaxiSettings) -> Result<Self, Problem> {
         let city = City::read(&settings.map)?;
         Ok(Self {
@@ -95,12 +94,12 @@ impl TaxiWorld {
         })
     }
 
-    /// The cell of a stand.
+    /// Returns the cell of a stand.
     fn stand(&self, stand: u8) -> usize {
         self.city.stands[usize::from(stand)].1
     }
 
-    /// The stand to go to: the passenger's, then the destination.
+    /// Returns the stand to go to: first the passenger's, then the destination.
     fn target(&self, state: &TaxiState) -> u8 {
         match state.passenger {
             Passenger::Waiting(stand) => stand,
@@ -112,15 +111,16 @@ impl TaxiWorld {
         usize::from(state.taxi) == self.stand(self.target(state))
     }
 
-    /// Executes an action, given what chance decides.
+    /// Executes an action and returns its reward.
     fn act(&self, state: &mut TaxiState, primitive: SubtaskId, chance: Chance) -> f64 {
         let legal = match (primitive, state.passenger) {
             (PICKUP, Passenger::Waiting(_)) => {
                 let there = self.is_at_target(state);
                 if there {
-                    state.passenger = match self.settings.change_of_mind > 0.0 {
-                        true => Passenger::Boarded,
-                        false => Passenger::Riding,
+                    state.passenger = if self.settings.change_of_mind > 0.0 {
+                        Passenger::Boarded
+                    } else {
+                        Passenger::Riding
                     };
                 }
                 there
@@ -131,7 +131,7 @@ impl TaxiWorld {
             }
             (PICKUP | PUTDOWN, _) => false,
             _ => {
-                self.drive(state, direction(primitive), chance);
+                self.drive(state, Direction::of(primitive, MOVES), chance);
                 true
             }
         };
@@ -146,8 +146,8 @@ impl TaxiWorld {
     fn drive(&self, state: &mut TaxiState, meant: Direction, chance: Chance) {
         let direction = match chance.slip {
             Slip::Straight => meant,
-            Slip::Right => meant.right(),
-            Slip::Left => meant.left(),
+            Slip::Right => meant.clockwise(),
+            Slip::Left => meant.clockwise().clockwise().clockwise(),
         };
         let to = self.city.to(usize::from(state.taxi), direction) as u16;
         let left = std::mem::replace(&mut state.taxi, to) != to;
@@ -159,7 +159,7 @@ impl TaxiWorld {
         }
     }
 
-    /// Draws what chance decides; nothing is drawn where nothing is to be decided.
+    /// Draws the random part of a step. No number is drawn for a probability of 0.
     fn chance(&self, state: &TaxiState, primitive: SubtaskId, rng: &mut Stream) -> Chance {
         let mut chance = Chance::NONE;
         if matches!(primitive, PICKUP | PUTDOWN) {
@@ -177,16 +177,6 @@ impl TaxiWorld {
             chance.whim = Some(rng.random_range(0..others));
         }
         chance
-    }
-}
-
-/// Where a move is meant to go.
-fn direction(primitive: SubtaskId) -> Direction {
-    match primitive {
-        SOUTH => Direction::South,
-        EAST => Direction::East,
-        WEST => Direction::West,
-        _ => Direction::North,
     }
 }
 
@@ -221,7 +211,7 @@ impl World for TaxiWorld {
     fn draw_start(&self, rng: &mut Stream) -> TaxiState {
         let stands = self.city.stands.len() as u8;
         TaxiState {
-            taxi: rng.random_range(0..self.city.cells() as u16),
+            taxi: rng.random_range(0..self.city.cells.count() as u16),
             passenger: Passenger::Waiting(rng.random_range(0..stands)),
             destination: rng.random_range(0..stands),
         }

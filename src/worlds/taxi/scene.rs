@@ -1,17 +1,17 @@
-//! What there is to see of the taxi problem.
+//! What the taxi problem looks like.
 
 use super::catalogue::{AT_DESTINATION, AT_PASSENGER, EAST, NORTH, RIDING, SOUTH, WAITING, WEST};
 use super::{Passenger, Percept, TaxiState, TaxiWorld};
 use crate::random::Stream;
-use crate::worlds::grid::{Cells, RADIUS, moves, outer_walls};
+use crate::worlds::grid::{RADIUS, moves, outer_walls};
 use crate::worlds::scene::{Mark, Role, Scale, Scenery, Scenic, Snapshot, Sweep};
 use crate::worlds::{Probe, StateType, SubtaskId, World};
 
 impl Scenic for TaxiWorld {
     fn scenery(&self) -> Scenery {
-        let cells = self.cells();
-        let walls = (0..self.city.cells()).filter(|&cell| {
-            let last = (cell + 1).is_multiple_of(self.city.columns);
+        let cells = self.city.cells;
+        let walls = (0..cells.count()).filter(|&cell| {
+            let last = (cell + 1).is_multiple_of(cells.columns);
             self.city.walled[cell] && !last
         });
         let east_of = |cell| {
@@ -40,7 +40,7 @@ impl Scenic for TaxiWorld {
     }
 
     fn snapshot(&self, state: &TaxiState) -> Snapshot {
-        let cells = self.cells();
+        let cells = self.city.cells;
         let at = cells.centre(usize::from(state.taxi));
         let passenger = String::from("passenger");
         let waits = match state.passenger {
@@ -74,7 +74,7 @@ impl Scenic for TaxiWorld {
     }
 
     fn position(&self, state: &TaxiState) -> [f64; 2] {
-        self.cells().centre(usize::from(state.taxi))
+        self.city.cells.centre(usize::from(state.taxi))
     }
 
     fn variants(&self) -> Vec<String> {
@@ -86,7 +86,7 @@ impl Scenic for TaxiWorld {
     fn state_at(&self, at: [f64; 2], _: f64, variant: usize, _: &mut Stream) -> Option<TaxiState> {
         let (passenger, destination) = self.tasks().nth(variant)?;
         Some(TaxiState {
-            taxi: self.cells().cell_at(at)? as u16,
+            taxi: self.city.cells.cell_at(at)? as u16,
             passenger,
             destination,
         })
@@ -103,7 +103,7 @@ impl Scenic for TaxiWorld {
             destination,
         };
         match state_type {
-            // In these the taxi is at its target: one case a task.
+            // The taxi is at its target: one case for each task.
             AT_PASSENGER | AT_DESTINATION => {
                 let probes = tasks.map(|task| {
                     let taxi = self.stand(self.target(&state(0, task)));
@@ -120,7 +120,7 @@ impl Scenic for TaxiWorld {
                 }]
             }
             WAITING | RIDING => {
-                let cells = self.cells();
+                let cells = self.city.cells;
                 let sweep = |task| Sweep {
                     across: cells.across(),
                     down: Some(cells.down()),
@@ -137,14 +137,7 @@ impl Scenic for TaxiWorld {
 }
 
 impl TaxiWorld {
-    fn cells(&self) -> Cells {
-        Cells {
-            columns: self.city.columns,
-            rows: self.city.rows,
-        }
-    }
-
-    /// All places of the passenger with all destinations, first those in which he waits.
+    /// Returns all pairs of passenger and destination, those of a waiting passenger first.
     fn tasks(&self) -> impl Iterator<Item = (Passenger, u8)> {
         let stands = 0..self.city.stands.len() as u8;
         let waiting = stands.clone().map(Passenger::Waiting);
@@ -172,7 +165,11 @@ impl TaxiWorld {
     }
 
     fn probe(&self, state: &TaxiState) -> Probe<Percept> {
-        let readings = self.cells().readings(usize::from(state.taxi)).into_iter();
+        let readings = self
+            .city
+            .cells
+            .readings(usize::from(state.taxi))
+            .into_iter();
         Probe {
             label: self.words(state.passenger, state.destination),
             readings: readings
