@@ -1,11 +1,10 @@
 //! Contract: the foraging world is the one that the method describes.
 //!
-//! The world is the ground that every result stands on, and an error in it shows in no
-//! learning test: agents learn to live with whatever they are given. So every rule is
-//! checked on thousands of states against its definition, by brute force over all
-//! walls, in every shipped arena; the fast lists of walls, the sliding, the noise and
-//! the state machine have to agree with that. Seen-through slits, closest batteries,
-//! captures and deliveries all occur in these walks; the tests count them.
+//! Every result depends on the world, and no learning test shows an error in it: agents adapt to
+//! any world. So every rule is checked against its definition on thousands of states, by brute
+//! force over all walls, in every shipped arena. The lists of walls, the sliding, the noise and
+//! the state types must agree with that. The tests count how often sight through slits, choices
+//! between batteries, captures and deliveries occur.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -39,7 +38,7 @@ fn world(scenario: &str) -> ForagingWorld {
     ForagingWorld::new(&model(scenario)).unwrap()
 }
 
-/// An action of a primitive subtask that is active in a state.
+/// Draws an action of a primitive subtask that is active in a state.
 fn some_action(
     world: &ForagingWorld,
     state: &ForagingState,

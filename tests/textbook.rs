@@ -1,12 +1,11 @@
-//! Contract: the textbook worlds come out as the textbook says.
+//! Contract: in the textbook worlds the learned values are those of the textbook.
 //!
-//! Taxi and cliff walk are where everybody checks an implementation, because there the
-//! truth is known: it is printed in the thesis and can be computed by dynamic programming.
-//! The programs that learn never see the exact model; if the two agree in every state, then
-//! world, algorithm and table are right together, and the same code runs foraging.
+//! The values of taxi and cliff walk are printed in the thesis, and dynamic programming computes
+//! them. Learning never uses the MDP. If both agree in every state, then world, algorithm and table
+//! are right, and foraging runs the same code.
 //!
-//! Learned values are single precision sums; in the deterministic worlds they settle on
-//! the exact ones but for rounding.
+//! Learned values are single precision sums. In the deterministic worlds they converge to the
+//! exact ones up to rounding.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 

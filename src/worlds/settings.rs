@@ -1,26 +1,27 @@
-//! What the folder of a world gives to the rest of the program.
+//! The settings of worlds, and the list that tells one world from another.
 
 use super::scene::Scenic;
 use crate::rules::{Check, Problem};
 
-/// The settings of a world as scenario files hold them, and the world that they make.
+/// The settings of a world in a scenario file. They make the world.
 ///
-/// The folder `src/worlds/NAME` exports them as `NameModel`: that is all that is known of it.
+/// The folder `src/worlds/NAME` exports them as `NameSettings`. The rest of the program uses
+/// nothing else of it.
 pub trait Settings {
     /// The world.
     type World: Scenic + 'static;
 
-    /// Checks every rule that the settings obey.
+    /// Checks the settings and reports every broken rule.
     fn check(&self, check: &mut Check);
 
-    /// The world that the settings describe; they obey the rules.
+    /// Makes the world. The settings have been checked.
     ///
     /// # Errors
-    /// When there is none nevertheless. The problem's place is below the settings.
+    /// Fails if they describe no world nevertheless. The problem's place is below the settings.
     fn build(&self) -> Result<Self::World, Problem>;
 
-    /// Whether primitive subtasks are trained before evolution starts
-    /// ([`World::training`](super::World::training)); where they are not, each individual has to learn them.
+    /// Returns whether primitive subtasks are trained before evolution starts
+    /// ([`World::training`](super::World::training)). If not, each individual learns them.
     fn trains_primitives(&self) -> bool {
         false
     }
@@ -35,8 +36,8 @@ pub trait WorldFn {
     fn call<W: Scenic + 'static>(self, world: W) -> Self::Output;
 }
 
-/// The sum of the worlds: the type of their settings, and the one place that tells one
-/// from another. Called once, in `worlds/mod.rs`.
+/// Defines the settings of a scenario's world, an enum of all worlds. Called once, in
+/// `worlds/mod.rs`.
 macro_rules! worlds {
     ($($(#[$doc:meta])* $name:ident: $folder:literal, $model:path;)+) => {
         /// The world of a scenario: its name, which is that of its folder, and its settings.

@@ -1,9 +1,9 @@
-//! The definitions of method.md section 1, by brute force over all walls.
+//! The definitions of the foraging world, by brute force over all walls.
 
 use maxq_lab::worlds::foraging::{Arena, ForagingState, ForagingWorld, Pose, Task, Wall};
 use nalgebra::{Point2, Vector2};
 
-/// Geometry this near to a border may fall on either side of it.
+/// Rounding may put geometry this near to a border on either side of it.
 pub const BORDER: f64 = 1e-6;
 
 pub const RADIUS: f64 = 75.0;
@@ -11,7 +11,7 @@ pub const RAYS_DEG: [f64; 5] = [90.0, 30.0, 0.0, -30.0, -90.0];
 const VISION_DEG: f64 = 60.0;
 const VISION_MM: f64 = 3500.0;
 
-/// Where a target is, seen from the robot.
+/// The position of a target relative to the robot.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight {
     pub target: usize,
@@ -19,25 +19,25 @@ pub struct Sight {
     pub angle_deg: f64,
 }
 
-/// Distance from a point to a wall.
+/// Returns the distance from a point to a wall.
 pub fn distance(point: Point2<f64>, wall: &Wall) -> f64 {
     let share = (point - wall.start).dot(&wall.span) / wall.span.norm_squared();
     (point - (wall.start + wall.span * share.clamp(0.0, 1.0))).norm()
 }
 
-/// Distance to the nearest wall.
+/// Returns the distance to the nearest wall.
 pub fn clearance(arena: &Arena, point: Point2<f64>) -> f64 {
     let distances = arena.walls.iter().map(|wall| distance(point, wall));
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// The sides of the line a - b that the wall's ends lie on, as signed distances.
+/// Returns the signed distances of points from the line through a and b.
 fn sides(a: Point2<f64>, b: Point2<f64>, points: [Point2<f64>; 2]) -> [f64; 2] {
     let along = (b - a).normalize();
     points.map(|point| along.perp(&(point - a)))
 }
 
-/// Whether a wall crosses the line a - b; `None` if that is a matter of rounding.
+/// Returns whether a wall crosses the line from a to b; `None` if rounding decides.
 pub fn crosses(a: Point2<f64>, b: Point2<f64>, wall: &Wall) -> Option<bool> {
     let [s, t] = sides(a, b, [wall.start, wall.end()]);
     let [u, v] = sides(wall.start, wall.end(), [a, b]);
@@ -49,7 +49,7 @@ pub fn crosses(a: Point2<f64>, b: Point2<f64>, wall: &Wall) -> Option<bool> {
     (across(s, t) && across(u, v)).then_some(true)
 }
 
-/// Whether the robot sees a target, and where; `None` at a border.
+/// Returns the target if the robot sees it; `None` at a border.
 pub fn sees(arena: &Arena, pose: &Pose, target: usize) -> Option<Option<Sight>> {
     let offset = arena.target(target) - pose.position;
     let angle = |v: Vector2<f64>| v.y.atan2(v.x);
@@ -79,8 +79,8 @@ pub fn sees(arena: &Arena, pose: &Pose, target: usize) -> Option<Option<Sight>> 
     })
 }
 
-/// The closest visible battery while empty-handed, else the nest if it is visible;
-/// `None` at a border.
+/// Returns the closest visible battery while empty-handed, else the nest if it is visible; `None`
+/// at a border.
 pub fn target_seen(arena: &Arena, pose: &Pose, task: Task) -> Option<Option<Sight>> {
     if task != Task::EmptyHanded {
         return sees(arena, pose, arena.batteries.len());
@@ -95,8 +95,8 @@ pub fn target_seen(arena: &Arena, pose: &Pose, task: Task) -> Option<Option<Sigh
     Some(closest)
 }
 
-/// The true distance from the body's surface to the nearest wall along a ray; `None`
-/// where the ray grazes the end of a wall.
+/// Returns the true distance from the body's surface to the nearest wall along a ray; `None` if the
+/// ray grazes the end of a wall.
 pub fn proximity(arena: &Arena, pose: &Pose, ray_deg: f64) -> Option<f64> {
     let (sin, cos) = ray_deg.to_radians().sin_cos();
     let (x, y) = (pose.heading.x, pose.heading.y);
@@ -112,7 +112,7 @@ pub fn proximity(arena: &Arena, pose: &Pose, ray_deg: f64) -> Option<f64> {
     Some(nearest - RADIUS)
 }
 
-/// The arena and whether a state's type is that of Table 4.1, numbered from 1.
+/// Returns the state type of Thesis Table 4.1, numbered from 1; `None` at a border.
 pub fn state_type(world: &ForagingWorld, state: &ForagingState) -> Option<usize> {
     let seen = target_seen(world.arena(), &state.pose, state.task)?.is_some();
     Some(match state.task {

@@ -1,7 +1,7 @@
-//! What the primitive subtasks learn before evolution starts.
+//! The primitive subtasks learn their purpose before evolution starts.
 //!
-//! The numbers are those that an independent implementation measured. They are the
-//! first thing to go wrong when rewards, features, episodes or temperatures do.
+//! An independent implementation measured the numbers. They are the first to change with an error
+//! in rewards, features, episodes or temperatures.
 
 use maxq_lab::evolution::{Experiment, Workers};
 use maxq_lab::learning::{Gate, PrimitiveSet};
@@ -13,7 +13,7 @@ use super::world;
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=4;
 
-/// Primitive subtasks trained in environments 1 and 2.
+/// Trains primitive subtasks in environments 1 and 2.
 fn trained() -> Vec<(Experiment<ForagingWorld>, PrimitiveSet)> {
     let workers = Workers::new(2).unwrap();
     let of = |(scenario, seed): (&str, u64)| {
@@ -27,7 +27,7 @@ fn trained() -> Vec<(Experiment<ForagingWorld>, PrimitiveSet)> {
     runs.map(of).collect()
 }
 
-/// The action values of a primitive subtask at one of its probes.
+/// Returns the action values of a primitive subtask at one of its probes.
 fn values(
     (experiment, primitives): &(Experiment<ForagingWorld>, PrimitiveSet),
     name: &str,
@@ -50,7 +50,7 @@ fn greedy(values: &[f32]) -> usize {
 }
 
 #[test]
-fn primitive_subtasks_learn_what_they_are_for() {
+fn primitive_subtasks_learn_their_purpose() {
     let runs = trained();
     // Greedy actions at -60, -50, +50, +60 degrees, actions numbered from 1.
     let labels = ["-60 deg", "-50 deg", "+50 deg", "+60 deg"];
@@ -69,7 +69,7 @@ fn primitive_subtasks_learn_what_they_are_for() {
             }
         }
     }
-    // Of 192 at +-60 degrees in 32 trainings one of Turn was wrong; here are 48 in 8.
+    // Of 192 actions at +-60 degrees in 32 trainings one of Turn was wrong. Here are 48 in 8.
     let at_the_edge =
         |&(name, label, _): &(&str, &str, usize)| name == "Turn" && label.ends_with("60 deg");
     assert!(

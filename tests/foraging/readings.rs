@@ -1,4 +1,4 @@
-//! Readings: ranges, noise and its order, sampling.
+//! Readings: ranges, noise before clipping, sampling.
 
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::worlds::World;
@@ -13,7 +13,7 @@ use super::{SCENARIOS, model, some_action, world};
 /// The ray straight ahead.
 const AHEAD: usize = 2;
 
-/// Readings of the sensor ahead of a robot in environment 1 whose body is this far from the wall ahead.
+/// Returns readings of the sensor ahead, at this distance from a wall in environment 1.
 fn ahead(gap_mm: f64) -> Vec<f64> {
     let world = world("environment-1");
     let pose = Pose {
@@ -85,8 +85,8 @@ fn noise_is_uniform_in_a_tenth_of_the_reading() {
     }
 }
 
-/// Noise comes before clipping (method.md 1): the other order would leave a sensor
-/// that touches a wall above 70 mm half the time, and Wander without its -1.
+/// In the other order a sensor that touches a wall would read more than 70 mm half the time, and
+/// Wander would not get its -1.
 #[test]
 fn noise_comes_before_clipping() {
     for touching in [0.0, 30.0, 63.0] {
@@ -96,7 +96,7 @@ fn noise_comes_before_clipping() {
     let at_the_end = ahead(70.0);
     assert!((share(&at_the_end, |mm| mm == 70.0) - 0.5).abs() < 0.02);
     assert!(at_the_end.iter().copied().fold(0.0, f64::max) > 76.9);
-    // Out of range by less than the noise: sometimes the noise brings it into range.
+    // Beyond the range by less than the noise, which sometimes brings the reading into the range.
     let beyond = ahead(375.0);
     let expected = (350.0 / 375.0 - 0.9) / 0.2;
     assert!((share(&beyond, |mm| mm < 350.0) - expected).abs() < 0.02);
@@ -104,8 +104,8 @@ fn noise_comes_before_clipping() {
 }
 
 #[test]
-fn every_reading_has_noise_of_its_own() {
-    // Along the wall below, which two sensors see, towards a battery.
+fn the_noise_of_readings_is_independent() {
+    // The robot heads for a battery, along a wall that two sensors measure.
     let world = world("environment-1");
     let pose = Pose {
         position: Point2::new(1500.0, RADIUS + 100.0),
@@ -141,8 +141,8 @@ fn correlation(rows: &[[f64; 4]], a: usize, b: usize) -> f64 {
     moment(a, b, mean_a, mean_b) / spread.sqrt()
 }
 
-/// Boxes without room for the robot, one around each battery or around the nest: what
-/// is inside is never seen, so a state of that type cannot be sampled.
+/// A box around each battery, or around the nest, has no room for the robot. What is inside is
+/// never visible, so that no state of that type can be sampled.
 #[test]
 fn sampling_returns_states_of_the_type_asked_for() {
     let boxed = |centres: &[[f64; 2]]| {

@@ -18,8 +18,8 @@ struct Step {
     after: ForagingState,
 }
 
-/// Walks for a number of steps; a new trial begins after a delivery and now and then.
-/// Targets are approached often enough to be reached.
+/// Walks for a number of steps. A new trial starts after a delivery, and at random. Targets are
+/// approached often enough to be reached.
 fn walk(world: &ForagingWorld, seed: u64, steps: usize, mut visit: impl FnMut(&Step)) {
     let mut rng = stream(seed, 0, 0, Purpose::Trials);
     let mut state = world.begin(&world.draw_start(&mut rng), &mut rng);
@@ -38,7 +38,7 @@ fn walk(world: &ForagingWorld, seed: u64, steps: usize, mut visit: impl FnMut(&S
             reward,
             after: state,
         });
-        // Hold on to an action only while its subtask is active.
+        // An action is repeated only while its subtask is active.
         let active = world.catalogue().subtask(primitive).active;
         held = Some((primitive, action)).filter(|_| active.contains(world.state_type(&state)));
         if matches!(state.task, Task::Delivered(_)) || rng.random::<f32>() < 0.001 {
@@ -48,7 +48,7 @@ fn walk(world: &ForagingWorld, seed: u64, steps: usize, mut visit: impl FnMut(&S
     }
 }
 
-/// Straight on, or a turn, towards a target nearly ahead and near.
+/// Returns an action towards a target that is near.
 fn towards_target(state: &ForagingState) -> Option<(SubtaskId, usize)> {
     use maxq_lab::worlds::foraging::{APPROACH_BATTERY, APPROACH_NEST};
     let target = state.target.filter(|target| target.distance_mm < 900.0)?;
@@ -127,7 +127,7 @@ fn the_target_is_the_closest_visible_battery_or_the_nest() {
             let (Some(sight), Some(reading)) = (seen, state.target) else {
                 return assert!(seen.is_none() && state.target.is_none());
             };
-            // A reading is within a tenth of the truth, and angles within the field of view.
+            // Readings are within a tenth of the truth, and angles within the field of view.
             let angle = f64::from(reading.angle_deg);
             let off = (f64::from(reading.distance_mm) / sight.distance - 1.0).abs();
             let off_deg = (angle - sight.angle_deg).abs();
@@ -148,7 +148,7 @@ fn capture_and_delivery_happen_exactly_within_their_distances() {
         let world = world(scenario);
         let (mut captures, mut deliveries) = (0, 0);
         walk(&world, 4, 40_000, |step| {
-            // What the robot sees once it has moved, in the task that it moved in.
+            // What the robot sees after its move decides, in the task before it.
             let task = step.before.task;
             let Some(seen) = target_seen(world.arena(), &step.after.pose, task) else {
                 return;
@@ -173,8 +173,8 @@ fn capture_and_delivery_happen_exactly_within_their_distances() {
     }
 }
 
-/// Equation 4.1, from the readings after the action. For the step that captures, the
-/// battery reached has no reading any more: the true angle then bounds the reward.
+/// The readings after the action decide. After a capture the battery has no reading left: its true
+/// angle bounds the reward.
 #[test]
 fn rewards_are_those_of_equation_4_1() {
     for scenario in SCENARIOS {

@@ -11,7 +11,7 @@ const FIGURE_2_3: [[Option<f64>; 12]; 4] = {
     while column < 12 {
         let mut row = 0;
         while row < 3 {
-            // One step each to the goal, around nothing.
+            // The steps to the goal, with nothing in the way.
             rows[row][column] = Some(-((11 - column) as f64) - (3 - row) as f64);
             row += 1;
         }
@@ -67,8 +67,8 @@ fn q_learning_with_rbf_features_learns_all_38_values() {
     check(&Algorithm::QLearningRbf, 1e-2);
 }
 
-/// A policy that falls again and again: other values than the optimal ones, and a learning
-/// rate small enough to average over its chances.
+/// A random policy falls again and again. Its values are far from the optimal ones, and the
+/// learning rate is small enough to average over chance.
 #[test]
 fn td0_learns_the_values_of_a_random_policy() {
     let experiment = cliff(&[
@@ -93,7 +93,7 @@ fn td0_learns_the_values_of_a_random_policy() {
 }
 
 #[test]
-fn maxq_q_on_a_hierarchy_finds_the_shortest_way_too() {
+fn maxq_q_finds_the_shortest_way() {
     let experiment = cliff(&[]);
     let algorithm = Algorithm::MaxqQ(hand_made(&experiment));
     let learned = learned(&experiment, &algorithm, 100_000, 1);

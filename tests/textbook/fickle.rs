@@ -1,5 +1,4 @@
-//! The fickle taxi: hierarchies with state abstraction learn it in fewer steps than flat
-//! Q-learning does.
+//! The fickle taxi: a hierarchy with state abstraction learns in fewer steps than flat Q-learning.
 
 use maxq_lab::evolution::Workers;
 use maxq_lab::lab::{Algorithm, LearnProtocol, learn};

@@ -1,4 +1,4 @@
-//! Four rooms: the ways between hallways make up the shortest way, and lead on where moves slip.
+//! Four rooms: shortest ways consist of ways between hallways, with and without slips.
 
 use maxq_lab::lab::Algorithm;
 use maxq_lab::worlds::World;
@@ -18,20 +18,21 @@ fn exact_values_are_minus_the_lengths_of_the_shortest_ways() {
     let values = experiment.world.mdp().unwrap().optimal_values(1.0).0;
     for (from, steps) in [
         ([8, 8], 0.0),
-        // Straight to the goal; through the hallways in the east, the south, the north.
+        // Without a hallway; through the eastern one; through the southern one; through the northern
+        // and the eastern one.
         ([10, 10], 4.0),
         ([8, 5], 3.0),
         ([4, 9], 5.0),
         ([4, 2], 10.0),
-        // Through the west, for through the north it is 16.
+        // Through the west: the way through the north has 16 steps.
         ([0, 4], 14.0),
     ] {
         assert_eq!(values[cell(from)], -steps, "{from:?}");
     }
 }
 
-/// Hallways have a single cell, so that the shortest way is made of the shortest ways from
-/// hallway to hallway: what is recursively optimal is optimal here.
+/// Hallways have a single cell, so that the shortest way consists of the shortest ways from hallway
+/// to hallway: a recursively optimal policy is optimal here.
 #[test]
 fn maxq_q_on_the_ways_between_hallways_finds_the_shortest_way() {
     for goal in ["[8, 8]", "[8, 6]"] {
@@ -44,8 +45,8 @@ fn maxq_q_on_the_ways_between_hallways_finds_the_shortest_way() {
     }
 }
 
-/// Where chance decides, all policies are alike and ways are long: no policy is better than
-/// the best, and one whose value is not known counts for nothing.
+/// With a slip of 0.75 every action moves in a random direction, so that all policies are equally
+/// good and trials are long. A policy whose value did not converge has none.
 #[test]
 fn no_policy_is_better_than_the_best() {
     let experiment = four_rooms(&["world.four_rooms.slip=0.75"]);

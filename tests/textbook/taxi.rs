@@ -12,7 +12,7 @@ use super::{hand_made, learned, taxi};
 /// Trials after which the values have settled.
 const TRIALS: usize = 20_000;
 
-/// The hand-made hierarchy, taught by random trials.
+/// Trains the hand-made hierarchy by random trials.
 fn taught(experiment: &Experiment<TaxiWorld>) -> (Hierarchy, PrimitiveSet) {
     let primitives = PrimitiveSet::untrained(experiment.catalogue(), &experiment.scenario.learning);
     let mut agent = experiment.agent(experiment.untrained(hand_made(experiment)), primitives);
@@ -27,8 +27,8 @@ fn taught(experiment: &Experiment<TaxiWorld>) -> (Hierarchy, PrimitiveSet) {
     agent.into_parts()
 }
 
-/// Figure 2.6: the taxi is one cell south of R, where the passenger waits; he wants to go
-/// to B. Stands are numbered R, G, Y, B.
+/// Figure 2.6: the passenger waits at R and wants to go to B. The taxi is one cell south of R. The
+/// stands R, G, Y and B have the numbers 0 to 3.
 const S1: TaxiState = TaxiState {
     taxi: 5,
     passenger: Passenger::Waiting(0),
@@ -86,12 +86,11 @@ fn the_values_are_those_of_thesis_2_2_2() {
 }
 
 #[test]
-fn they_are_without_state_abstraction() {
+fn the_values_are_the_same_without_state_abstraction() {
     check_the_values_of_2_2_2(&["world.taxi.state_abstraction=false"]);
 }
 
-/// From every start, the agent itself, with its stack of active subtasks, earns what
-/// dynamic programming says is the most.
+/// From every start the agent, with its stack of active subtasks, earns the optimal return.
 #[test]
 fn the_greedy_policy_is_optimal_from_every_start() {
     for abstraction in ["true", "false"] {
@@ -100,7 +99,7 @@ fn the_greedy_policy_is_optimal_from_every_start() {
         let (hierarchy, primitives) = taught(&experiment);
         let finite = experiment.world.mdp().unwrap();
         let exact = finite.optimal_values(1.0).0;
-        // Neither explores nor learns.
+        // The agent neither explores nor learns.
         let mut still = experiment.scenario.learning.clone();
         (still.probability_limit, still.epsilon, still.learning_rate) = (0.0, 0.0, 0.0);
         let (world, encoder) = (&experiment.world, &experiment.encoder);

@@ -1,4 +1,4 @@
-//! The worlds are what their exact models say, in every state and for every action.
+//! The worlds agree with their MDPs in every state and for every action.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +10,8 @@ use super::{cliff, four_rooms, taxi};
 /// Steps sampled for each action in a state.
 const SAMPLES: usize = 400;
 
-/// In every state that the world can show: the rewards and next states of many steps come
-/// as often as the model says.
+/// Checks in every state that can be shown that rewards and next states of many steps are as
+/// frequent as in the MDP. Returns the number of states.
 fn check<W: Scenic>(world: &W) -> usize {
     let finite = world.mdp().unwrap();
     let mut rng = stream(3, 0, 0, Purpose::Trials);
@@ -19,7 +19,7 @@ fn check<W: Scenic>(world: &W) -> usize {
     let number = |state: &W::State| {
         let (state_type, percept) = (world.state_type(state), world.percept(state));
         let same = |(_, known): &(usize, &maxq_lab::worlds::mdp::MdpState<W::Percept>)| {
-            // The end has one number, whatever is perceived there.
+            // All terminal states have the same number.
             known.state_type == state_type
                 && (known.outcomes.is_empty() || known.percept.as_ref() == percept.as_ref())
         };
@@ -66,22 +66,22 @@ fn check<W: Scenic>(world: &W) -> usize {
 }
 
 #[test]
-fn the_taxi_does_what_its_model_says() {
+fn the_taxi_agrees_with_its_mdp() {
     assert_eq!(check(&taxi("taxi", &[]).world), 500);
 }
 
 #[test]
-fn the_fickle_taxi_does_what_its_model_says() {
+fn the_fickle_taxi_agrees_with_its_mdp() {
     assert_eq!(check(&taxi("taxi-fickle", &[]).world), 500);
 }
 
 #[test]
-fn the_walker_does_what_its_model_says() {
+fn the_cliff_walk_agrees_with_its_mdp() {
     assert_eq!(check(&cliff(&[]).world), 38);
 }
 
 #[test]
-fn who_walks_in_four_rooms_does_what_the_model_says() {
+fn four_rooms_agree_with_their_mdp() {
     assert_eq!(check(&four_rooms(&[]).world), 104);
     // The goal in a hallway, too.
     let hallway = "world.four_rooms.goal_cell=[8, 6]";
