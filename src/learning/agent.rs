@@ -3,7 +3,6 @@
 use super::Encoder;
 use super::gate::{Gate, Stopped};
 use super::hierarchy::Hierarchy;
-use super::maxq_q::Frame;
 use super::plan::Plan;
 use super::primitives::PrimitiveSet;
 use super::selection::Softmax;
@@ -13,6 +12,17 @@ use crate::hierarchy::Tree;
 use crate::random::Stream;
 use crate::scenario::LearningSettings;
 use crate::worlds::{StateType, World};
+
+/// A call of the recursion: an active composite subtask.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    pub(super) node: usize,
+    /// The child that it invoked last.
+    pub(super) child: usize,
+    /// The length of the list of visited states when that child was invoked: its
+    /// `childSeq` starts there.
+    pub(super) started: usize,
+}
 
 /// An agent: a hierarchy that acts in a world and learns by MAXQ-Q (Thesis Algorithm 2.4).
 #[derive(Clone, Debug)]

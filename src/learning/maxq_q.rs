@@ -5,24 +5,13 @@
 
 use rand::RngExt;
 
-use super::agent::{Agent, Observer, Trial, Update};
+use super::agent::{Agent, Frame, Observer, Trial, Update};
 use super::linear::Replay;
 use super::selection::uniform;
 use super::state_values::{Completion, Parameters};
 use crate::random::Stream;
 use crate::scenario::{CompositeChoice, CoolOn, LearningSettings, PrimitiveLearning, PseudoReward};
 use crate::worlds::{StateType, World};
-
-/// A call of the recursion: an active composite subtask.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub(super) node: usize,
-    /// The child that it invoked last.
-    pub(super) child: usize,
-    /// The length of the list of visited states when that child was invoked: its
-    /// `childSeq` starts there.
-    pub(super) started: usize,
-}
 
 impl<W: World> Agent<'_, W> {
     /// Advances a trial by one time step: choose down to an action, execute it, learn.
