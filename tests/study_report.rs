@@ -417,7 +417,7 @@ fn exports_say_what_is_allowed() {
         ),
         (
             &["--format", "dot", "--figure", "4.8"],
-            "found dot; allowed",
+            "found dot with --figure; allowed",
         ),
         (
             &["--format", "svg", "--figure", "4.6"],
