@@ -8,7 +8,7 @@ use super::dashboard::DashboardArgs;
 use super::output::{Failure, Format};
 use crate::dashboard::terminal;
 use crate::lab::inspection::Start;
-use crate::lab::{AnyExperiment, Keep, RunOptions};
+use crate::lab::{AnyExperiment, Keep, MANIFEST, RunOptions};
 use crate::scenario::{EMBEDDED, Scenario};
 
 /// A scenario and changes to its settings.
@@ -31,7 +31,7 @@ impl ScenarioArgs {
     pub(super) fn load(&self) -> Result<Scenario, Failure> {
         let name = &self.scenario;
         let is_embedded = EMBEDDED.iter().any(|embedded| embedded.name == name);
-        if !is_embedded && Path::new(name).join("run.json").is_file() {
+        if !is_embedded && Path::new(name).join(MANIFEST).is_file() {
             let message = format!(
                 "{name}: found a run folder; allowed: a scenario file, or the name of a built-in \
                  scenario (to resume this run: 'maxq-lab resume {name}'; to view it: 'maxq-lab \

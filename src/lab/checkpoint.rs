@@ -62,6 +62,15 @@ pub struct Checkpoint {
     individuals: Vec<IndividualFile>,
 }
 
+/// The part of a checkpoint that says of which run it is, and which events came before it.
+#[derive(Debug, Deserialize)]
+pub(super) struct CheckpointHead {
+    scenario: Scenario,
+    seed: u64,
+    /// The events before the checkpoint.
+    pub(super) events: LogPosition,
+}
+
 /// JSON without spaces. A number equal to the one before it is copied and not formatted again:
 /// many parameters still have their initial value.
 #[derive(Default)]
@@ -156,11 +165,9 @@ impl Checkpoint {
     /// # Errors
     /// When it cannot be read or is not a checkpoint of this format.
     pub fn read(path: &Path) -> Result<Option<Self>, CheckpointError> {
-        if !path.exists() {
-            return Ok(None);
-        }
-        let text = read_text(path, MAX_CHECKPOINT_BYTES).map_err(|error| error.source)?;
-        Self::from_text(&text).map(Some)
+        text_of(path)?
+            .map(|text| Self::from_text(&text))
+            .transpose()
     }
 
     /// Reads the text of a checkpoint file. Format and checksum are checked first.
@@ -168,20 +175,7 @@ impl Checkpoint {
     /// # Errors
     /// When the text is not a checkpoint of this format, was changed, or holds an invalid scenario.
     pub fn from_text(text: &str) -> Result<Self, CheckpointError> {
-        let any: AnyFormat = parse_json(text)?;
-        if any.format != CHECKPOINT_FORMAT {
-            return Err(CheckpointError::Format { found: any.format });
-        }
-        let envelope: Envelope<'_> = parse_json(text)?;
-        let state = envelope.state.get();
-        let actual = checksum(state.as_bytes());
-        if actual != envelope.crc32 {
-            return Err(CheckpointError::Checksum {
-                actual,
-                stated: envelope.crc32,
-            });
-        }
-        let mut checkpoint: Self = parse_json(state).map_err(|error| error.within("state"))?;
+        let mut checkpoint: Self = parse_state(text)?;
         checkpoint.scenario = checkpoint.scenario.checked("the checkpoint's scenario")?;
         Ok(checkpoint)
     }
@@ -192,21 +186,7 @@ impl Checkpoint {
     /// # Errors
     /// With what differs, what was found and what is allowed.
     pub fn check_origin(&self, scenario: &Scenario, seed: u64) -> Result<(), String> {
-        if seed != self.seed {
-            let allowed = self.seed;
-            return Err(format!(
-                "seed: found {seed}; allowed: {allowed}, as in checkpoint.json"
-            ));
-        }
-        let mut own = self.scenario.clone();
-        own.evolution.generation_limit = scenario.evolution.generation_limit;
-        if own != *scenario {
-            return Err(String::from(
-                "scenario: found another; allowed: that of checkpoint.json, except for \
-                 generation_limit",
-            ));
-        }
-        Ok(())
+        check_origin((&self.scenario, self.seed), (scenario, seed))
     }
 
     /// Returns the state in the checkpoint; `catalogue` is that of the scenario's world.
@@ -258,6 +238,65 @@ impl Checkpoint {
         }
         Ok(())
     }
+}
+
+impl CheckpointHead {
+    /// Reads the head of a checkpoint file; returns `None` if there is no file. The checksum of the
+    /// whole state is checked.
+    pub(super) fn read(path: &Path) -> Result<Option<Self>, CheckpointError> {
+        text_of(path)?.map(|text| parse_state(&text)).transpose()
+    }
+
+    /// As [`Checkpoint::check_origin`].
+    pub(super) fn check_origin(&self, scenario: &Scenario, seed: u64) -> Result<(), String> {
+        check_origin((&self.scenario, self.seed), (scenario, seed))
+    }
+}
+
+fn text_of(path: &Path) -> Result<Option<String>, CheckpointError> {
+    if !path.exists() {
+        return Ok(None);
+    }
+    let text = read_text(path, MAX_CHECKPOINT_BYTES).map_err(|error| error.source)?;
+    Ok(Some(text))
+}
+
+/// Reads the state in the text of a checkpoint file. Format and checksum are checked first.
+fn parse_state<'t, T: Deserialize<'t>>(text: &'t str) -> Result<T, CheckpointError> {
+    let any: AnyFormat = parse_json(text)?;
+    if any.format != CHECKPOINT_FORMAT {
+        return Err(CheckpointError::Format { found: any.format });
+    }
+    let envelope: Envelope<'_> = parse_json(text)?;
+    let state = envelope.state.get();
+    let actual = checksum(state.as_bytes());
+    if actual != envelope.crc32 {
+        return Err(CheckpointError::Checksum {
+            actual,
+            stated: envelope.crc32,
+        });
+    }
+    Ok(parse_json(state).map_err(|error| error.within("state"))?)
+}
+
+/// Checks that a checkpoint of `own` belongs to the run of `allowed`, except for the generation
+/// limit.
+fn check_origin(own: (&Scenario, u64), run: (&Scenario, u64)) -> Result<(), String> {
+    let ((mine, seed), (scenario, found)) = (own, run);
+    if found != seed {
+        return Err(format!(
+            "seed: found {found}; allowed: {seed}, as in checkpoint.json"
+        ));
+    }
+    let mut mine = mine.clone();
+    mine.evolution.generation_limit = scenario.evolution.generation_limit;
+    if mine != *scenario {
+        return Err(String::from(
+            "scenario: found another; allowed: that of checkpoint.json, except for \
+             generation_limit",
+        ));
+    }
+    Ok(())
 }
 
 /// Checks that learning has not diverged: such a state can neither be resumed nor written as JSON.

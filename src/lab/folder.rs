@@ -17,6 +17,15 @@ use crate::files::{
 };
 use crate::scenario::MAX_FILE_BYTES;
 
+/// Name of the file that says what was run.
+pub const MANIFEST: &str = "run.json";
+/// Name of the file with the latest state.
+pub const CHECKPOINT: &str = "checkpoint.json";
+/// Name of the file with the recorded events.
+pub const EVENTS: &str = "events.jsonl";
+/// Name of the file with the result.
+pub const SUMMARY: &str = "summary.json";
+
 /// Prefix of the names of run folders under construction.
 const NEW_RUN: &str = ".new-run-";
 
@@ -151,7 +160,7 @@ impl RunFolder {
         if entries.next().is_none() {
             return Ok(None);
         }
-        if !force || !path.join("run.json").is_file() {
+        if !force || !path.join(MANIFEST).is_file() {
             return Err(occupied(path, manifest));
         }
         let old = Self::open(path)?;
@@ -167,7 +176,7 @@ impl RunFolder {
     /// # Errors
     /// When it is not a run folder, or another process works on it.
     pub fn open(path: &Path) -> Result<Self, FolderError> {
-        if !path.join("run.json").is_file() {
+        if !path.join(MANIFEST).is_file() {
             return Err(FolderError::NotARun {
                 path: path.display().to_string(),
             });
@@ -191,25 +200,25 @@ impl RunFolder {
     /// Returns the path of `run.json`.
     #[must_use]
     pub fn manifest(&self) -> PathBuf {
-        self.path.join("run.json")
+        self.path.join(MANIFEST)
     }
 
     /// Returns the path of `checkpoint.json`.
     #[must_use]
     pub fn checkpoint(&self) -> PathBuf {
-        self.path.join("checkpoint.json")
+        self.path.join(CHECKPOINT)
     }
 
     /// Returns the path of `events.jsonl`.
     #[must_use]
     pub fn events(&self) -> PathBuf {
-        self.path.join("events.jsonl")
+        self.path.join(EVENTS)
     }
 
     /// Returns the path of `summary.json`.
     #[must_use]
     pub fn summary(&self) -> PathBuf {
-        self.path.join("summary.json")
+        self.path.join(SUMMARY)
     }
 
     /// Returns the path of the folder of kept checkpoints.
@@ -241,7 +250,7 @@ impl RunFolder {
     /// # Errors
     /// When it is missing or is not a valid `run.json`.
     pub fn read_manifest(folder: &Path) -> Result<Manifest, FolderError> {
-        let file = folder.join("run.json");
+        let file = folder.join(MANIFEST);
         if !file.is_file() {
             return Err(FolderError::NotARun {
                 path: folder.display().to_string(),

@@ -9,7 +9,8 @@ use serde::Deserialize;
 
 use super::checkpoint::MAX_CHECKPOINT_BYTES;
 use super::event::Event;
-use super::folder::RunFolder;
+use super::folder::{CHECKPOINT, EVENTS, MANIFEST, RunFolder};
+use super::integrity::{EventOrder, check_log};
 use super::log::{LogError, read_event};
 use super::manifest::{Manifest, host_name};
 use super::news::{Liveness, News, Recording};
@@ -54,7 +55,7 @@ struct LogReader {
     lines: usize,
     bytes: u64,
     last: Vec<u8>,
-    over: bool,
+    order: Option<EventOrder>,
 }
 
 impl Follower {
@@ -115,9 +116,9 @@ impl Follower {
     /// the next call.
     ///
     /// # Errors
-    /// When `run.json` or the log cannot be read.
+    /// When `run.json` or the log cannot be read, or the log is damaged or of another run.
     pub fn update(&mut self, now: Instant, news: &mut Vec<News>) -> Result<(), RunError> {
-        let Some(stamp) = self.stamp("run.json") else {
+        let Some(stamp) = self.stamp(MANIFEST) else {
             if self.run.take().is_some() {
                 self.forget();
             }
@@ -126,10 +127,12 @@ impl Follower {
         };
         if self.run.as_ref().is_none_or(|run| run.stamp != stamp) {
             let value = RunFolder::read_manifest(&self.folder)?;
-            let same = self.run.take().is_some_and(|run| {
+            let is_same = self.run.as_ref().is_some_and(|run| {
                 run.value.started == value.started && run.value.scenario == value.scenario
             });
-            if !same {
+            if !is_same {
+                self.run = None;
+                check_log(&self.folder, &value)?;
                 self.forget();
                 news.push(News::Run(Box::new(value.clone())));
             }
@@ -149,14 +152,15 @@ impl Follower {
     }
 
     fn read_log(&mut self, news: &mut Vec<News>) -> Result<(), RunError> {
-        let path = self.folder.join("events.jsonl");
-        let stamp = self.stamp("events.jsonl");
+        let path = self.folder.join(EVENTS);
+        let stamp = self.stamp(EVENTS);
         if stamp == self.log.stamp {
             return Ok(());
         }
         let Some(run) = &self.run else {
             return Ok(());
         };
+        let order = EventOrder::of(&run.value);
         let in_log = |error: LogError| FileError::new(&path, error);
         let file = match stamp {
             Some(_) => Some(File::open(&path).map_err(|error| in_log(error.into()))?),
@@ -173,7 +177,9 @@ impl Follower {
             self.forget();
         }
         if let Some(mut reader) = reader {
-            self.log.read_further(&mut reader, news).map_err(in_log)?;
+            self.log
+                .read_further(&mut reader, order, news)
+                .map_err(in_log)?;
         }
         self.log.stamp = stamp;
         Ok(())
@@ -188,12 +194,12 @@ impl Follower {
         struct State {
             generation: u64,
         }
-        let stamp = self.stamp("checkpoint.json");
+        let stamp = self.stamp(CHECKPOINT);
         if stamp == self.checkpoint {
             return;
         }
         self.checkpoint = stamp;
-        let bytes = read_bytes(&self.folder.join("checkpoint.json"), MAX_CHECKPOINT_BYTES);
+        let bytes = read_bytes(&self.folder.join(CHECKPOINT), MAX_CHECKPOINT_BYTES);
         // A follower does not need the checkpoint, so a damaged one is no trouble; resuming
         // reports it.
         let file = bytes
@@ -211,7 +217,7 @@ impl Follower {
         let found: Option<Beat> = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok());
         let Some(found) = found else {
             self.beat = None;
-            let liveness = if self.log.over {
+            let liveness = if self.log.order.as_ref().is_some_and(EventOrder::is_over) {
                 Liveness::Over
             } else {
                 Liveness::Stopped
@@ -265,15 +271,20 @@ impl LogReader {
     fn read_further(
         &mut self,
         reader: &mut (impl std::io::BufRead + Seek),
+        start: EventOrder,
         news: &mut Vec<News>,
     ) -> Result<(), LogError> {
         reader.seek(SeekFrom::Start(self.bytes))?;
         let mut line = Vec::new();
+        let order = self.order.get_or_insert(start);
         while let Some(event) = read_event(reader, &mut line, self.lines + 1)? {
+            order.check(&event).map_err(|message| LogError::Line {
+                line: self.lines + 1,
+                message,
+            })?;
             self.lines += 1;
             self.bytes += line.len() as u64;
             std::mem::swap(&mut self.last, &mut line);
-            self.over = matches!(event, Event::Ended { .. });
             news.push(News::Event(event));
         }
         Ok(())

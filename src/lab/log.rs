@@ -74,30 +74,7 @@ impl Log {
     /// Opens a log and cuts off what was written after `position`.
     pub(super) fn reopen(path: &Path, position: LogPosition) -> Result<Self, LogError> {
         let mut file = OpenOptions::new().read(true).write(true).open(path)?;
-        let mut hasher = crc32fast::Hasher::new();
-        let mut left = position.bytes;
-        let mut buffer = [0; 1 << 16];
-        while left > 0 {
-            let wanted = buffer
-                .len()
-                .min(usize::try_from(left).unwrap_or(usize::MAX));
-            let read = file.read(&mut buffer[..wanted])?;
-            if read == 0 {
-                return Err(LogError::NotOfCheckpoint {
-                    found: format!("{} bytes", position.bytes - left),
-                    expected: position,
-                });
-            }
-            hasher.update(&buffer[..read]);
-            left -= read as u64;
-        }
-        let crc32 = hasher.finalize();
-        if crc32 != position.crc32 {
-            return Err(LogError::NotOfCheckpoint {
-                found: format!("CRC-32 {crc32:08x} of these bytes"),
-                expected: position,
-            });
-        }
+        check_prefix(&mut BufReader::new(&file), position)?;
         file.set_len(position.bytes)?;
         file.seek(SeekFrom::Start(position.bytes))?;
         Ok(Self { file, position })
@@ -127,6 +104,37 @@ impl Log {
     pub(super) fn position(&self) -> LogPosition {
         self.position
     }
+}
+
+/// Checks that a log begins with the events before `position`, and returns the last of their lines.
+pub(super) fn check_prefix(
+    reader: &mut impl BufRead,
+    position: LogPosition,
+) -> Result<Vec<u8>, LogError> {
+    let mismatch = |found| LogError::NotOfCheckpoint {
+        found,
+        expected: position,
+    };
+    let mut hasher = crc32fast::Hasher::new();
+    let (mut last, mut line) = (Vec::new(), Vec::new());
+    let (mut lines, mut bytes) = (0, 0);
+    while bytes < position.bytes {
+        line.clear();
+        let wanted = (position.bytes - bytes).min(MAX_LINE_BYTES);
+        let read = reader.take(wanted).read_until(b'\n', &mut line)?;
+        if read == 0 {
+            return Err(mismatch(format!("{lines} lines ({bytes} bytes)")));
+        }
+        hasher.update(&line);
+        bytes += read as u64;
+        lines += 1;
+        std::mem::swap(&mut last, &mut line);
+    }
+    let crc32 = hasher.finalize();
+    if crc32 != position.crc32 {
+        return Err(mismatch(format!("CRC-32 {crc32:08x} of these bytes")));
+    }
+    Ok(last)
 }
 
 /// Reads the events of a log in order. An incomplete last line is ignored: the process died while

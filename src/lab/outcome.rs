@@ -1,8 +1,13 @@
 //! The result of a run: `run` prints it and `summary.json` holds it.
 
+use std::fs;
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 
+use super::folder::SUMMARY;
 use crate::evolution::{GenerationRecord, RankedRecord};
+use crate::files::{FileError, parse_json, read_text};
 
 /// The result of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,6 +30,24 @@ pub struct Outcome {
     pub wall_seconds: f64,
     /// The run folder.
     pub run_dir: String,
+}
+
+/// Largest `summary.json` that is read, in bytes.
+const MAX_SUMMARY_BYTES: u64 = 1 << 20;
+
+impl Outcome {
+    /// Reads the result of the run in a folder; returns `None` before evolution is over.
+    ///
+    /// # Errors
+    /// When the file does not hold a result.
+    pub fn read(folder: &Path) -> Result<Option<Self>, FileError> {
+        let path = folder.join(SUMMARY);
+        if !fs::exists(&path).unwrap_or(true) {
+            return Ok(None);
+        }
+        let outcome = parse_json(&read_text(&path, MAX_SUMMARY_BYTES)?);
+        Ok(Some(outcome.map_err(|error| FileError::new(path, error))?))
+    }
 }
 
 /// The best individual of a generation.

@@ -15,12 +15,9 @@ use super::pulse::Pulse;
 use super::recorder::{Message, QUEUE_CAPACITY, RecordError, Recorder};
 use super::run_error::RunError;
 use crate::evolution::{Evolution, EvolutionState, Experiment, Workers};
-use crate::files::{FileError, read_text, write_atomically};
+use crate::files::{FileError, write_atomically};
 use crate::learning::Stopped;
 use crate::worlds::World;
-
-/// Largest `summary.json` that is read, in bytes.
-const MAX_SUMMARY_BYTES: u64 = 1 << 20;
 
 /// What the evolution thread needs besides the experiment.
 #[derive(Debug)]
@@ -245,8 +242,7 @@ impl<W: World> WorldRun<'_, W> {
 
 /// Returns whether `summary.json` holds this result; wall-clock time and path may differ.
 fn has_summary(folder: &RunFolder, outcome: &Outcome) -> bool {
-    let text = read_text(&folder.summary(), MAX_SUMMARY_BYTES).ok();
-    let written: Option<Outcome> = text.and_then(|text| serde_json::from_str(&text).ok());
+    let written = Outcome::read(folder.path()).ok().flatten();
     written.is_some_and(|written| {
         let now = Outcome {
             wall_seconds: written.wall_seconds,

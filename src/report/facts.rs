@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use super::arm::{Arm, Base};
-use super::results::{StudyRunError, check_evaluation, check_origin, evaluation, summary};
+use super::results::{PlannedRun, StudyRunError, check_evaluation, evaluation};
 use super::study::{RunId, Study};
 use super::winner::Winner;
 use crate::evolution::GenerationRecord;
 use crate::files::FileError;
-use crate::lab::{Event, experiment, read_events};
+use crate::lab::{EVENTS, Event, Outcome, Recording, experiment};
 
 /// The facts of a finished run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,14 +65,13 @@ impl Facts {
     /// When its folder holds another run, or a file cannot be read.
     pub fn read(study: &Study, run: &RunId) -> Result<Option<Self>, StudyRunError> {
         let folder = study.run_folder(run);
-        let (Some(outcome), Some(found)) = (summary(&folder)?, evaluation(&folder)?) else {
+        let planned = PlannedRun::of(study, run)?;
+        let (Some(outcome), Some(found)) = (Outcome::read(&folder)?, evaluation(&folder)?) else {
             return Ok(None);
         };
         check_evaluation(study, run, &outcome, &found)?;
-        let scenario = study.arm(run).apply(study.scenario(run))?;
-        let manifest = check_origin(study, run, &scenario)?;
-        let file = folder.join("events.jsonl");
-        let events = read_events(&file)?;
+        let manifest = planned.manifest()?;
+        let (events, file) = (Recording::read(&folder)?.events, folder.join(EVENTS));
         let records: Vec<_> = events
             .into_iter()
             .filter_map(|event| match event {
@@ -83,7 +82,7 @@ impl Facts {
         let best = records.last().and_then(|record| record.individuals.first());
         let best =
             best.ok_or_else(|| FileError::new(&file, String::from("holds no generation")))?;
-        let experiment = experiment(scenario, run.seed)?;
+        let experiment = experiment(planned.scenario, run.seed)?;
         let winner = Winner::of(best, &*experiment).map_err(|error| {
             let message = format!("the best hierarchy: {error}");
             FileError::new(&file, message)

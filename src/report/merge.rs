@@ -7,13 +7,14 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::results::{EVALUATION, StudyRunError, evaluation, summary};
+use super::arm::ArmError;
+use super::results::{EVALUATION, PlannedRun, StudyRunError, evaluation};
 use super::study::{RunId, Study, StudyError};
 use crate::files::{FileError, sync_folder};
-use crate::lab::{FolderError, RunFolder};
+use crate::lab::{CHECKPOINT, EVENTS, FolderError, MANIFEST, RunFolder};
 
 /// Files of a run that depend on the plan alone.
-const DETERMINED: [&str; 3] = ["events.jsonl", "checkpoint.json", EVALUATION];
+const DETERMINED: [&str; 3] = [EVENTS, CHECKPOINT, EVALUATION];
 
 /// Files of the process that works on a run; they are not copied.
 const LEFT_BEHIND: [&str; 2] = ["lock", "pulse.json"];
@@ -96,8 +97,8 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<usize, MergeError> {
     let mut runs = 0;
     for run in merged.runs() {
         let sources = studies.iter().chain([&merged]);
-        let folders = sources.map(|study| study.run_folder(&run));
-        runs += usize::from(merge_run(&merged, &run, folders)?);
+        let planned = sources.map(|study| PlannedRun::of(study, &run));
+        runs += usize::from(merge_run(&merged, &run, planned)?);
     }
     Ok(runs)
 }
@@ -105,11 +106,12 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<usize, MergeError> {
 fn merge_run(
     merged: &Study,
     run: &RunId,
-    folders: impl Iterator<Item = PathBuf>,
+    planned: impl Iterator<Item = Result<PlannedRun, ArmError>>,
 ) -> Result<bool, MergeError> {
     let mut candidates = Vec::new();
-    for folder in folders {
-        candidates.extend(Candidate::of(folder)?);
+    for planned in planned {
+        let planned = planned.map_err(StudyRunError::from)?;
+        candidates.extend(Candidate::of(&planned)?);
     }
     let mut done = candidates.iter().filter(|candidate| candidate.done);
     if let Some(first) = done.next() {
@@ -135,14 +137,16 @@ fn merge_run(
 }
 
 impl Candidate {
-    fn of(folder: PathBuf) -> Result<Option<Self>, MergeError> {
-        let manifest = match fs::read(folder.join("run.json")) {
+    fn of(planned: &PlannedRun) -> Result<Option<Self>, MergeError> {
+        let folder = planned.folder.clone();
+        let manifest = match fs::read(folder.join(MANIFEST)) {
             Ok(manifest) => manifest,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(refused(&folder.join("run.json"), error)),
+            Err(error) => return Err(refused(&folder.join(MANIFEST), error)),
         };
-        let over = summary(&folder)?.is_some();
-        let length = fs::metadata(folder.join("events.jsonl")).map_or(0, |data| data.len());
+        planned.manifest()?;
+        let over = planned.outcome()?.is_some();
+        let length = fs::metadata(folder.join(EVENTS)).map_or(0, |data| data.len());
         Ok(Some(Self {
             done: over && evaluation(&folder)?.is_some(),
             over,

@@ -10,19 +10,20 @@ use thiserror::Error;
 use super::arm::ArmError;
 use super::study::{RunId, Study};
 use crate::files::{FileError, parse_json, read_text};
-use crate::lab::{Evaluation, FolderError, Manifest, Outcome, RunError, RunFolder, SetupError};
+use crate::lab::{
+    Evaluation, FolderError, MANIFEST, Manifest, Outcome, RunError, RunFolder, SetupError,
+    check_log,
+};
 use crate::learning::Stopped;
 use crate::scenario::Scenario;
 
-/// The file with the result of a run.
-pub(super) const SUMMARY: &str = "summary.json";
 /// The file with the evaluation of the winner of a run.
 pub(super) const EVALUATION: &str = "evaluation.json";
 
 /// Version of the format of `evaluation.json`.
 pub(super) const EVALUATION_FORMAT: u32 = 1;
 
-/// Largest `evaluation.json` or `summary.json` that is read, in bytes.
+/// Largest `evaluation.json` that is read, in bytes.
 const MAX_RESULT_BYTES: u64 = 1 << 24;
 
 /// Difference between the seed of a run and the seed of its winner's evaluation. It is far larger
@@ -78,37 +79,26 @@ pub enum StudyRunError {
     Threads(String),
 }
 
-/// Reads the result of the run in a folder; `None` before evolution has ended.
-///
-/// # Errors
-/// When the file does not hold a result.
-pub(super) fn summary(folder: &Path) -> Result<Option<Outcome>, StudyRunError> {
-    read(folder.join(SUMMARY))
-}
-
 /// Reads the evaluation of the winner of the run in a folder; `None` before it is done.
 ///
 /// # Errors
 /// When the file does not hold an evaluation of this version.
 pub(super) fn evaluation(folder: &Path) -> Result<Option<WinnerEvaluation>, StudyRunError> {
     let path = folder.join(EVALUATION);
-    let found: Option<WinnerEvaluation> = read(path.clone())?;
-    match &found {
-        Some(WinnerEvaluation { format, .. }) if *format != EVALUATION_FORMAT => {
-            let message = format!("format: found {format}; allowed: {EVALUATION_FORMAT}");
-            Err(FileError::new(path, message).into())
-        }
-        _ => Ok(found),
-    }
-}
-
-fn read<T: for<'t> Deserialize<'t>>(path: PathBuf) -> Result<Option<T>, StudyRunError> {
     // In an unfinished study, a missing file is not an error.
     if !fs::exists(&path).unwrap_or(true) {
         return Ok(None);
     }
-    let value = parse_json(&read_text(&path, MAX_RESULT_BYTES)?);
-    Ok(Some(value.map_err(|error| FileError::new(path, error))?))
+    let found = parse_json(&read_text(&path, MAX_RESULT_BYTES)?);
+    let found: WinnerEvaluation = found.map_err(|error| FileError::new(&path, error))?;
+    if found.format != EVALUATION_FORMAT {
+        let message = format!(
+            "format: found {}; allowed: {EVALUATION_FORMAT}",
+            found.format
+        );
+        return Err(FileError::new(path, message).into());
+    }
+    Ok(Some(found))
 }
 
 /// Returns the seed of the evaluation of a run's winner.
@@ -116,29 +106,75 @@ pub(super) fn evaluation_seed(run: &RunId) -> u64 {
     run.seed.wrapping_add(EVALUATION_SEED_OFFSET)
 }
 
-/// Reads the `run.json` of a run and checks that it is the run of the plan. If the arm has a
-/// matched budget, the generation limit may differ.
-///
-/// # Errors
-/// When it cannot be read, or is that of another run.
-pub(super) fn check_origin(
-    study: &Study,
-    run: &RunId,
-    expected: &Scenario,
-) -> Result<Manifest, StudyRunError> {
-    let folder = study.run_folder(run);
-    let manifest = RunFolder::read_manifest(&folder)?;
-    let mut found = manifest.scenario.clone();
-    if study.arm(run).base.is_matched() {
-        found.evolution.generation_limit = expected.evolution.generation_limit;
+/// A run as the plan of its study wants it.
+#[derive(Clone, Debug)]
+pub(super) struct PlannedRun {
+    /// The scenario with the settings of the arm.
+    pub(super) scenario: Scenario,
+    run: RunId,
+    name: String,
+    /// The run folder.
+    pub(super) folder: PathBuf,
+    /// Whether the generation limit is that of another run.
+    is_matched: bool,
+}
+
+impl PlannedRun {
+    /// Returns the run of the plan.
+    ///
+    /// # Errors
+    /// When the arm does not fit the scenario.
+    pub(super) fn of(study: &Study, run: &RunId) -> Result<Self, ArmError> {
+        let arm = study.arm(run);
+        Ok(Self {
+            scenario: arm.apply(study.scenario(run))?,
+            run: *run,
+            name: study.name(run),
+            folder: study.run_folder(run),
+            is_matched: arm.base.is_matched(),
+        })
     }
-    if found != *expected || manifest.seed != run.seed {
-        return Err(StudyRunError::Another {
-            path: folder.join("run.json").display().to_string(),
-            expected: study.name(run),
-        });
+
+    /// Reads the `run.json` of the run and checks that it is the run of the plan.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is that of another run.
+    pub(super) fn manifest(&self) -> Result<Manifest, StudyRunError> {
+        let manifest = RunFolder::read_manifest(&self.folder)?;
+        self.check(&manifest)?;
+        Ok(manifest)
     }
-    Ok(manifest)
+
+    /// Checks that `manifest` is that of the run of the plan.
+    ///
+    /// # Errors
+    /// When it is that of another run.
+    pub(super) fn check(&self, manifest: &Manifest) -> Result<(), StudyRunError> {
+        let mut expected = self.scenario.clone();
+        if self.is_matched {
+            expected.evolution.generation_limit = manifest.scenario.evolution.generation_limit;
+        }
+        if manifest.scenario != expected || manifest.seed != self.run.seed {
+            return Err(StudyRunError::Another {
+                path: self.folder.join(MANIFEST).display().to_string(),
+                expected: self.name.clone(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Reads the result of the run; `None` before evolution has ended. A result counts only if the
+    /// folder holds the run of the plan with its whole log.
+    ///
+    /// # Errors
+    /// When the folder holds another run, or a file is damaged.
+    pub(super) fn outcome(&self) -> Result<Option<Outcome>, StudyRunError> {
+        let Some(outcome) = Outcome::read(&self.folder)? else {
+            return Ok(None);
+        };
+        check_log(&self.folder, &self.manifest()?)?;
+        Ok(Some(outcome))
+    }
 }
 
 /// Checks that an evaluation is the one that the plan asks for, of the winner of the run.

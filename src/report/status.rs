@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::results::{EVALUATION, SUMMARY, StudyRunError, evaluation, summary};
+use super::results::{EVALUATION, PlannedRun, StudyRunError, evaluation};
 use super::study::{RunId, Study};
 use crate::files::Stamp;
-use crate::lab::{Event, Follower, Liveness, News, Recording, RunError};
+use crate::lab::{Event, Follower, Liveness, MANIFEST, News, Recording, RunError, SUMMARY};
 
 /// The state of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -101,7 +101,7 @@ impl StatusWatch {
     pub fn of(study: &Study) -> Self {
         let runs = study.runs().into_iter();
         Self {
-            runs: runs.map(|run| Watched::of(waiting(study, run))).collect(),
+            runs: runs.map(|run| Watched::of(study, run)).collect(),
         }
     }
 
@@ -134,6 +134,7 @@ fn waiting(study: &Study, run: RunId) -> RunStatus {
 struct Watched {
     /// Its status as long as it has no folder.
     waiting: RunStatus,
+    planned: Result<PlannedRun, String>,
     status: RunStatus,
     /// The versions of its result files that were read last.
     results: [Option<Stamp>; 2],
@@ -142,9 +143,11 @@ struct Watched {
 }
 
 impl Watched {
-    fn of(waiting: RunStatus) -> Self {
+    fn of(study: &Study, run: RunId) -> Self {
+        let waiting = waiting(study, run);
         Self {
             status: waiting.clone(),
+            planned: PlannedRun::of(study, &run).map_err(|error| error.to_string()),
             waiting,
             results: [None; 2],
             follower: None,
@@ -160,11 +163,14 @@ impl Watched {
         }
         self.results = results;
         let mut status = self.waiting.clone();
-        let looked = if is_over {
-            self.follower = None;
-            read_results(&mut status).map_err(|error| error.to_string())
-        } else {
-            self.follow(&mut status, now)
+        let looked = match &self.planned {
+            Ok(planned) if is_over => {
+                self.follower = None;
+                read_results(planned, &mut status).map_err(|error| error.to_string())
+            }
+            Ok(planned) => follow(&mut self.follower, planned, &mut status, now)
+                .map_err(|error| error.to_string()),
+            Err(message) => Err(message.clone()),
         };
         if let Err(trouble) = looked {
             status.stage = RunState::Unreadable;
@@ -173,30 +179,34 @@ impl Watched {
         self.status = status;
         &self.status
     }
+}
 
-    fn follow(&mut self, status: &mut RunStatus, now: Instant) -> Result<(), String> {
-        if !status.folder.join("run.json").is_file() {
-            self.follower = None;
-            return Ok(());
-        }
-        let follower = self
-            .follower
-            .get_or_insert_with(|| Followed::of(&status.folder));
-        follower.look(now).map_err(|error| error.to_string())?;
-        status.generations = follower.generations;
-        status.best_steps.clone_from(&follower.best_steps);
-        status.stage = match follower.liveness {
-            Liveness::Computing => RunState::Running,
-            Liveness::Over => RunState::Evolved,
-            Liveness::Absent | Liveness::Silent | Liveness::Stopped => RunState::Interrupted,
-        };
-        Ok(())
+/// Reads what is new of a run whose evolution has not ended.
+fn follow(
+    follower: &mut Option<Followed>,
+    planned: &PlannedRun,
+    status: &mut RunStatus,
+    now: Instant,
+) -> Result<(), StudyRunError> {
+    if !status.folder.join(MANIFEST).is_file() {
+        *follower = None;
+        return Ok(());
     }
+    let follower = follower.get_or_insert_with(|| Followed::of(&status.folder));
+    follower.look(now, planned)?;
+    status.generations = follower.generations;
+    status.best_steps.clone_from(&follower.best_steps);
+    status.stage = match follower.liveness {
+        Liveness::Computing => RunState::Running,
+        Liveness::Over => RunState::Evolved,
+        Liveness::Absent | Liveness::Silent | Liveness::Stopped => RunState::Interrupted,
+    };
+    Ok(())
 }
 
 /// Reads the results of a run whose evolution has ended.
-fn read_results(status: &mut RunStatus) -> Result<(), StudyRunError> {
-    if let Some(outcome) = summary(&status.folder)? {
+fn read_results(planned: &PlannedRun, status: &mut RunStatus) -> Result<(), StudyRunError> {
+    if let Some(outcome) = planned.outcome()? {
         status.generations = outcome.generations;
         status.converged = outcome.converged;
         status.best_steps = outcome.best.iter().map(|best| best.fitness).collect();
@@ -226,12 +236,15 @@ impl Followed {
         }
     }
 
-    fn look(&mut self, now: Instant) -> Result<(), RunError> {
+    fn look(&mut self, now: Instant, planned: &PlannedRun) -> Result<(), StudyRunError> {
         let mut all = Vec::new();
-        let looked = self.follower.update(now, &mut all);
+        self.follower.update(now, &mut all)?;
         for news in all {
             match news {
-                News::Run(_) => (self.generations, self.best_steps) = (0, Vec::new()),
+                News::Run(manifest) => {
+                    planned.check(&manifest)?;
+                    (self.generations, self.best_steps) = (0, Vec::new());
+                }
                 News::Event(Event::Generation(record)) => {
                     self.generations = record.generation;
                     self.best_steps.extend(record.mean_trial_steps(1));
@@ -240,7 +253,7 @@ impl Followed {
                 News::Event(_) | News::Trouble(_) => {}
             }
         }
-        looked
+        Ok(())
     }
 }
 

@@ -6,15 +6,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::arm::{Arm, Base};
 use super::results::{
-    EVALUATION, EVALUATION_FORMAT, SUMMARY, StudyRunError, WinnerEvaluation, check_evaluation,
-    check_origin, evaluation, evaluation_seed, summary,
+    EVALUATION, EVALUATION_FORMAT, PlannedRun, StudyRunError, WinnerEvaluation, check_evaluation,
+    evaluation, evaluation_seed,
 };
 use super::study::{RunId, Study};
 use crate::evolution::Workers;
 use crate::files::{FileError, write_atomically};
 use crate::lab::{
-    Controls, FolderError, Keep, Outcome, Protocol, Run, RunError, RunFolder, RunOptions,
-    experiment, resume, start,
+    Controls, FolderError, Keep, MANIFEST, Outcome, Protocol, Run, RunError, RunFolder, RunOptions,
+    SUMMARY, experiment, resume, start,
 };
 use crate::learning::{Gate, Stopped};
 use crate::scenario::Scenario;
@@ -80,16 +80,16 @@ impl StudyRun<'_> {
     /// When the run is stopped or fails, or its folder holds something else.
     pub fn finish(&self) -> Result<WinnerEvaluation, StudyRunError> {
         let folder = self.study.run_folder(&self.run);
-        if let (Some(outcome), Some(found)) = (summary(&folder)?, evaluation(&folder)?) {
-            check_evaluation(self.study, &self.run, &outcome, &found)?;
+        let planned = PlannedRun::of(self.study, &self.run)?;
+        let outcome = planned.outcome()?;
+        if let (Some(outcome), Some(found)) = (&outcome, evaluation(&folder)?) {
+            check_evaluation(self.study, &self.run, outcome, &found)?;
             return Ok(found);
         }
-        let scenario = self.study.scenario(&self.run);
-        let scenario = self.study.arm(&self.run).apply(scenario)?;
-        if summary(&folder)?.is_none() {
-            self.evolve(&folder, &scenario)?;
+        if outcome.is_none() {
+            self.evolve(&folder, &planned)?;
         }
-        self.evaluate(&folder, scenario)
+        self.evaluate(&folder, planned.scenario)
     }
 
     /// Returns whether `error` means that another process does the run: it holds the lock, or has
@@ -101,7 +101,7 @@ impl StudyRun<'_> {
                 match error {
                     FolderError::InUse { .. } => true,
                     FolderError::Exists { .. } => {
-                        self.study.run_folder(&self.run).join("run.json").is_file()
+                        self.study.run_folder(&self.run).join(MANIFEST).is_file()
                     }
                     _ => false,
                 }
@@ -110,17 +110,22 @@ impl StudyRun<'_> {
         }
     }
 
-    fn evolve(&self, folder: &Path, scenario: &Scenario) -> Result<(), StudyRunError> {
+    fn evolve(&self, folder: &Path, planned: &PlannedRun) -> Result<(), StudyRunError> {
         let options = RunOptions {
             threads: 1,
             keep: self.keep,
             force: false,
         };
-        let run = if folder.join("run.json").is_file() {
-            check_origin(self.study, &self.run, scenario)?;
+        let run = if folder.join(MANIFEST).is_file() {
+            planned.manifest()?;
             resume(folder, None, &options)?
         } else {
-            start(self.with_budget(scenario)?, self.run.seed, folder, &options)?
+            start(
+                self.with_budget(&planned.scenario)?,
+                self.run.seed,
+                folder,
+                &options,
+            )?
         };
         if self.controls.follow(run)?.stopped {
             return Err(Stopped.into());
@@ -147,7 +152,7 @@ impl StudyRun<'_> {
         let is_pair = |arm: &Arm| arm.base == Base::Evolved && arm.settings == own.settings;
         if let Some(arm) = self.study.plan.arms.iter().position(is_pair) {
             let folder = self.study.run_folder(&RunId { arm, ..self.run });
-            if let Some(outcome) = summary(&folder)? {
+            if let Some(outcome) = Outcome::read(&folder)? {
                 return Ok(outcome.generations);
             }
         }
@@ -173,7 +178,7 @@ impl StudyRun<'_> {
             return Ok(found);
         }
         let wrong = |message: String| FileError::new(folder.join(SUMMARY), message);
-        let best = summary(folder)?.and_then(|outcome| outcome.best);
+        let best = Outcome::read(folder)?.and_then(|outcome| outcome.best);
         let best = best.ok_or_else(|| wrong(String::from("names no best individual")))?;
         let plan = self.study.plan.reevaluation;
         let protocol = Protocol {

@@ -12,6 +12,7 @@ use crate::files::FileError;
 use crate::lab::checkpoint::Checkpoint;
 use crate::lab::controls::Controls;
 use crate::lab::experiment::AnyExperiment;
+use crate::lab::folder::CHECKPOINT;
 
 /// Populations that are cached.
 const CAPACITY: usize = 8;
@@ -75,7 +76,7 @@ impl Archive {
         if let Some(state) = self.live_state() {
             return Ok(state);
         }
-        let state = self.read(&self.folder.join("checkpoint.json"))?;
+        let state = self.read(&self.folder.join(CHECKPOINT))?;
         state.map(Arc::new).ok_or_else(|| ArchiveError::Nothing {
             folder: self.folder.display().to_string(),
         })
@@ -112,7 +113,7 @@ impl Archive {
             return Ok(state);
         }
         // checkpoint.json holds the latest generation even if it was not kept.
-        let latest = self.read(&self.folder.join("checkpoint.json"))?;
+        let latest = self.read(&self.folder.join(CHECKPOINT))?;
         let fits = latest.filter(|state| state.generation == generation);
         fits.ok_or_else(|| ArchiveError::NotKept {
             generation,

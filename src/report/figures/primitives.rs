@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::{Chart, Series};
-use crate::lab::{AnyExperiment, Checkpoint, CheckpointError, SetupError, experiment};
+use crate::lab::{AnyExperiment, CHECKPOINT, Checkpoint, CheckpointError, SetupError, experiment};
 use crate::learning::PrimitiveValues;
 use crate::scenario::Scenario;
 use crate::worlds::{Kind, Probe};
@@ -27,7 +27,7 @@ pub(super) fn action_values(
 
 fn charts(experiment: &dyn AnyExperiment, folder: &Path) -> Result<Vec<Chart>, String> {
     let wrong = |error: CheckpointError| format!("checkpoint.json: {error}");
-    let checkpoint = Checkpoint::read(&folder.join("checkpoint.json")).map_err(wrong)?;
+    let checkpoint = Checkpoint::read(&folder.join(CHECKPOINT)).map_err(wrong)?;
     let checkpoint = checkpoint.ok_or("holds no checkpoint.json")?;
     let state = experiment.population(&checkpoint).map_err(wrong)?;
     let primitives = state.primitives.all().iter();
