@@ -4,7 +4,7 @@
 //! events before it, and `summary.json` says where they end.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader};
 use std::path::Path;
 
 use super::checkpoint::{CheckpointHead, LogPosition};

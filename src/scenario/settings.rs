@@ -9,6 +9,10 @@ use super::defaults as d;
 /// Settings of MAXQ-Q and of action selection (Thesis 2.2.2, 3.1, Table 4.5).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[expect(
+    clippy::manual_non_exhaustive,
+    reason = "the private field is there for old files, not to hide the constructor"
+)]
 pub struct LearningSettings {
     /// Learning rate alpha.
     pub learning_rate: f64,
