@@ -253,8 +253,8 @@ fn a_look_reads_only_what_has_changed() {
 
     // A run whose evolution has not ended is followed from where it was.
     let folder = study.run_folder(&other);
-    for result in ["summary.json", "evaluation.json"] {
-        fs::remove_file(folder.join(result)).unwrap();
+    for later in ["summary.json", "evaluation.json", "checkpoint.json"] {
+        fs::remove_file(folder.join(later)).unwrap();
     }
     let log = folder.join("events.jsonl");
     let whole = fs::read_to_string(&log).unwrap();

@@ -130,25 +130,24 @@ fn parts_are_merged_in_any_order() {
             .arg("--out")
             .arg(at("b")),
     );
-    let events = at("a").join("smoke/evolved/seed-1/events.jsonl");
-    fs::write(
-        &events,
-        fs::read_to_string(&events).unwrap().replacen('5', "6", 1),
-    )
-    .unwrap();
-    let refused = output(
-        program()
-            .args(["study", "merge"])
-            .arg(at("a"))
-            .arg("--out")
-            .arg(at("one")),
-    );
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(
-        stderr(&refused).contains("events.jsonl is not the same"),
-        "{}",
-        stderr(&refused)
-    );
+    for (file, says) in [
+        ("evaluation.json", "evaluation.json is not the same"),
+        ("events.jsonl", "events.jsonl: found CRC-32"),
+    ] {
+        let path = at("a").join("smoke/evolved/seed-1").join(file);
+        let whole = fs::read_to_string(&path).unwrap();
+        fs::write(&path, whole.replacen("\"steps\":", "\"steps\": ", 1)).unwrap();
+        let refused = output(
+            program()
+                .args(["study", "merge"])
+                .arg(at("a"))
+                .arg("--out")
+                .arg(at("one")),
+        );
+        assert_eq!(refused.status.code(), Some(1));
+        assert!(stderr(&refused).contains(says), "{}", stderr(&refused));
+        fs::write(&path, whole).unwrap();
+    }
 }
 
 #[test]

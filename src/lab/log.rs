@@ -117,17 +117,16 @@ pub(super) fn check_prefix(
     };
     let mut hasher = crc32fast::Hasher::new();
     let (mut last, mut line) = (Vec::new(), Vec::new());
-    let (mut lines, mut bytes) = (0, 0);
+    let mut bytes = 0;
     while bytes < position.bytes {
         line.clear();
         let wanted = (position.bytes - bytes).min(MAX_LINE_BYTES);
         let read = reader.take(wanted).read_until(b'\n', &mut line)?;
         if read == 0 {
-            return Err(mismatch(format!("{lines} lines ({bytes} bytes)")));
+            return Err(mismatch(format!("{bytes} bytes")));
         }
         hasher.update(&line);
         bytes += read as u64;
-        lines += 1;
         std::mem::swap(&mut last, &mut line);
     }
     let crc32 = hasher.finalize();
