@@ -22,7 +22,7 @@ mod watch;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use output::Failure;
 
@@ -75,6 +75,12 @@ enum Command {
     Scenarios(scenarios::Args),
     Completions(manual::CompletionArgs),
     Manual(manual::ManualArgs),
+}
+
+/// Returns the command line as clap knows it.
+#[must_use]
+pub fn command() -> clap::Command {
+    Cli::command()
 }
 
 /// Runs the program with the arguments of the process and returns its exit code.
