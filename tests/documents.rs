@@ -260,6 +260,26 @@ fn every_file_that_a_page_names_exists() {
     }
 }
 
+/// The walks through the house in `src/lib.rs` name files and functions.
+#[test]
+fn the_walks_through_the_house_lead_through_real_rooms() {
+    let page = fs::read_to_string(root().join("src/lib.rs")).unwrap();
+    let mut count = 0;
+    for line in page.lines().filter(|line| line.contains(".rs`, `")) {
+        let (place, _) = line.split_once(": ").unwrap();
+        let mut names = place.split('`').skip(1).step_by(2);
+        let file = names.next().unwrap();
+        let source = fs::read_to_string(root().join("src").join(file));
+        let source = source.unwrap_or_else(|error| panic!("src/{file}: {error}"));
+        for name in names {
+            let is_there = ["(", "<"].map(|open| source.contains(&format!("fn {name}{open}")));
+            assert!(is_there.contains(&true), "src/{file} has no {name}: {line}");
+            count += 1;
+        }
+    }
+    assert!(count > 20, "the walks were not found");
+}
+
 #[test]
 fn the_citation_can_be_read() {
     let text = fs::read_to_string(root().join("CITATION.cff")).unwrap();

@@ -31,6 +31,20 @@ pub enum TextError {
 
 /// Reads the text form of a hierarchy. Typing rules are left to [`super::check`].
 ///
+/// # Examples
+/// ```
+/// use maxq_lab::hierarchy::{parse, to_text};
+/// use maxq_lab::lab::experiment;
+/// use maxq_lab::scenario::Scenario;
+///
+/// let experiment = experiment(Scenario::load("smoke")?, 1)?;
+/// let text = "(Root (Capture Wander ApproachBattery) Wander ApproachNest)";
+/// let tree = parse(text, experiment.catalogue())?;
+/// assert_eq!(tree.depth(), 3);
+/// assert_eq!(to_text(&tree, experiment.catalogue()), text);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// When the text is too long, is not one tree in parentheses, or names a subtask
 /// that the catalogue does not have.

@@ -83,6 +83,22 @@ pub trait AnyExperiment: Send + Sync {
     /// Measures how good the structure `tree` is; calls `progress` with the number of
     /// repeats done so far.
     ///
+    /// # Examples
+    /// ```
+    /// use maxq_lab::evolution::Workers;
+    /// use maxq_lab::lab::{Protocol, experiment};
+    /// use maxq_lab::learning::Gate;
+    /// use maxq_lab::scenario::Scenario;
+    ///
+    /// let experiment = experiment(Scenario::load("cliff")?, 1)?;
+    /// let tree = experiment.read_tree("(Root Up Down Right Left)")?;
+    /// let protocol = Protocol { warmup: 20, trials: 5, repeats: 2, banks: 1 };
+    /// let workers = Workers::new(1)?;
+    /// let scored = experiment.evaluate(&tree, &protocol, &workers, &Gate::default(), &|_| {})?;
+    /// assert!(scored.evaluation.mean >= 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// When the gate is stopped.
     fn evaluate(

@@ -60,6 +60,20 @@ impl Run {
 
 /// Starts a run in a new folder.
 ///
+/// # Examples
+/// ```
+/// use maxq_lab::lab::{RunOptions, start};
+/// use maxq_lab::scenario::Scenario;
+///
+/// let settings = ["evolution.trials_per_generation=4", "evolution.generation_limit=2"];
+/// let scenario = Scenario::load("cliff")?.with_settings(&settings.map(String::from))?;
+/// let parent = tempfile::tempdir()?;
+/// let run = start(scenario, 1, &parent.path().join("run"), &RunOptions::default())?;
+/// let outcome = run.join()?;
+/// assert_eq!(outcome.generations, 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// When the scenario cannot be made ready or the folder cannot be created.
 pub fn start(

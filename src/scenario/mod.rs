@@ -52,6 +52,19 @@ pub struct Scenario {
 impl Scenario {
     /// Loads the file `name` if it exists, and else the built-in scenario of that name.
     ///
+    /// # Examples
+    /// ```
+    /// use maxq_lab::scenario::Scenario;
+    ///
+    /// let scenario = Scenario::load("environment-1")?;
+    /// assert_eq!(scenario.evolution.population_size, 16);
+    ///
+    /// let settings = [String::from("learning.discount=0.95")];
+    /// let scenario = scenario.with_settings(&settings)?;
+    /// assert_eq!(scenario.learning.discount, 0.95);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// When neither exists, or the file cannot be read, is too large, is not a scenario, or
     /// breaks a rule.
