@@ -50,7 +50,7 @@
 //! 4. `worlds/foraging/mod.rs`, `inputs`: readings are scaled to [0, 1].
 //! 5. `learning/agent.rs`, `perceive`: the agent takes the inputs and the state type.
 //! 6. `learning/features.rs`, `compute`: Gaussian features of the inputs, when first needed.
-//! 7. `learning/agent.rs`, `descend`: from Root down, each composite subtask chooses a child.
+//! 7. `learning/maxq_q.rs`, `descend`: from Root down, each composite subtask chooses a child.
 //! 8. `learning/state_values.rs`, `projected_value`, `completion`: V and C~ of each child.
 //! 9. `learning/linear.rs`, `dot`: each is a product of parameters and features.
 //! 10. `learning/selection.rs`, `choose`: softmax picks a child, and in the end an action.
@@ -63,7 +63,7 @@
 //! 2. `lab/work.rs`, `evolve_on`: sends the record to the recorder and to the reader.
 //! 3. `lab/recorder.rs`, `run`: on its own thread, appends it to `events.jsonl`. It may wait for
 //!    the disk, and loses nothing.
-//! 4. `lab/controls.rs`, `send`: puts the event into the channel; a slow reader never delays
+//! 4. `lab/feed.rs`, `send`: puts the event into the channel; a slow reader never delays
 //!    evolution.
 //! 5. `dashboard/session/source.rs`, `news`: takes events from the channel.
 //! 6. `dashboard/session/mod.rs`, `hear`: hands them to the app, five times a second.

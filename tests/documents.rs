@@ -55,11 +55,11 @@ impl Page {
         code.map(|code| code.replace('\n', " ")).collect()
     }
 
-    /// Returns the targets of links that are no web addresses.
+    /// Returns the targets of links that are files: no web addresses, no items of the code.
     fn links(&self) -> impl Iterator<Item = &str> {
         let targets = self.text.split("](").skip(1);
         let targets = targets.filter_map(|rest| rest.split_once(')').map(|(target, _)| target));
-        targets.filter(|target| !target.contains("://"))
+        targets.filter(|target| !target.contains("://") && !target.contains("::"))
     }
 
     /// Returns the anchors of the headings.

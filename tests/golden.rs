@@ -53,7 +53,7 @@ fn scenario(name: &str) -> Scenario {
 }
 
 #[test]
-fn evolution_gives_the_bits_that_everybody_gets() {
+fn evolution_gives_the_published_bits() {
     for &(name, golden) in EVOLUTION {
         let found = crc32fast::hash(&record(&scenario(name), 1, &threads(2)).events);
         assert_eq!(
@@ -64,7 +64,7 @@ fn evolution_gives_the_bits_that_everybody_gets() {
 }
 
 #[test]
-fn learning_gives_the_bits_that_everybody_gets() {
+fn learning_gives_the_published_bits() {
     for &(name, algorithm, golden) in LEARNING {
         let experiment = experiment(Scenario::load(name).unwrap(), 1).unwrap();
         let found = crc32fast::hash(learned(&*experiment, algorithm).as_bytes());
