@@ -19,7 +19,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         warmup: 4,
         trials: 4,
         repeats: 8,
-        banks: 2,
+        primitive_sets: 2,
     };
     let workers = Workers::new(0)?;
     let scored = experiment.evaluate(&tree, &protocol, &workers, &Gate::default(), &|_| {})?;

@@ -60,13 +60,13 @@
 //! A generation ends.
 //!
 //! 1. `evolution/evolve.rs`, `step`: ranks the individuals and returns a `GenerationRecord`.
-//! 2. `lab/work.rs`, `evolve_on`: sends the record to the recorder and to the reader.
+//! 2. `lab/work.rs`, `advance`: sends the record to the recorder and to the reader.
 //! 3. `lab/recorder.rs`, `run`: on its own thread, appends it to `events.jsonl`. It may wait for
 //!    the disk, and loses nothing.
 //! 4. `lab/feed.rs`, `send`: puts the event into the channel; a slow reader never delays
 //!    evolution.
 //! 5. `dashboard/session/source.rs`, `news`: takes events from the channel.
-//! 6. `dashboard/session/mod.rs`, `hear`: hands them to the app, five times a second.
+//! 6. `dashboard/session/mod.rs`, `read_news`: hands them to the app, five times a second.
 //! 7. `dashboard/app/state.rs`, `update`: the only way to change what the screen shows.
 //! 8. `dashboard/context/history.rs`, `apply`: adds the generation to the history.
 //! 9. `dashboard/app/state.rs`, `draw_on`: the views draw into a buffer of cells.

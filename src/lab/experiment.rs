@@ -92,7 +92,7 @@ pub trait AnyExperiment: Send + Sync {
     ///
     /// let experiment = experiment(Scenario::load("cliff")?, 1)?;
     /// let tree = experiment.read_tree("(Root Up Down Right Left)")?;
-    /// let protocol = Protocol { warmup: 20, trials: 5, repeats: 2, banks: 1 };
+    /// let protocol = Protocol { warmup: 20, trials: 5, repeats: 2, primitive_sets: 1 };
     /// let workers = Workers::new(1)?;
     /// let scored = experiment.evaluate(&tree, &protocol, &workers, &Gate::default(), &|_| {})?;
     /// assert!(scored.evaluation.mean >= 1.0);
