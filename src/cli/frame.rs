@@ -9,6 +9,7 @@ use super::args::StartArg;
 use super::dashboard::AppearanceArgs;
 use super::output::{self, CommandResult};
 use crate::dashboard::keys::Key;
+use crate::dashboard::terminal::LARGEST_SIDE;
 use crate::dashboard::{
     App, Effect, FrameFormat, Input, Mode, OffscreenDashboard, ViewContext, ViewId, render,
 };
@@ -73,8 +74,6 @@ pub(super) struct Args {
 #[derive(Clone, Copy, Debug)]
 struct Size(u16, u16);
 
-/// Largest number of columns, and of rows.
-const MOST: u16 = 1000;
 /// Longest playing time, in seconds.
 const LONGEST: f64 = 3600.0;
 /// Time step of the rollout.
@@ -84,11 +83,11 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.parse().ok().filter(|n| (1..=MOST).contains(n));
+        let number = |text: &str| text.parse().ok().filter(|n| (1..=LARGEST_SIDE).contains(n));
         let numbers = text.split_once('x');
         let size = numbers.and_then(|(w, h)| Some(Self(number(w)?, number(h)?)));
         size.ok_or_else(|| {
-            format!("found {text:?}; allowed: COLUMNSxROWS, each from 1 to {MOST}, such as 80x24")
+            format!("found {text:?}; allowed: COLUMNSxROWS, each from 1 to {LARGEST_SIDE}, such as 80x24")
         })
     }
 }

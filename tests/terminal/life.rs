@@ -1,5 +1,7 @@
 //! A session: start, pause, step, resize, quit.
 
+use maxq_lab::dashboard::terminal::LARGEST_SIDE;
+
 use crate::pty::{Pty, program};
 use crate::{ENDLESS, Place, USER_STOP, exists, leave, wait_for_end, wait_for_good_end};
 
@@ -57,6 +59,25 @@ fn the_dashboard_follows_the_size_of_the_window() {
     pty.resize(120, 40);
     pty.wait_for("RUNNING");
     leave(&mut pty);
+}
+
+#[test]
+fn a_terminal_of_an_absurd_size_is_drawn_to_in_its_top_left_corner() {
+    let place = Place::new();
+    let arguments = place.run(ENDLESS);
+    let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
+    let mut pty = Pty::start(u16::MAX, u16::MAX, program(&arguments));
+    pty.wait_for("RUNNING");
+    pty.resize(120, 40);
+    pty.wait("a frame of the new size", |pty| {
+        pty.screen().lines().count() == 40
+    });
+    pty.resize(u16::MAX, u16::MAX);
+    pty.wait("a frame of the largest size", |pty| {
+        pty.screen().lines().count() == usize::from(LARGEST_SIDE)
+    });
+    leave(&mut pty);
+    place.assert_saved();
 }
 
 #[test]

@@ -11,6 +11,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use maxq_lab::dashboard::terminal::LARGEST_SIDE;
 use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
 
 /// The limit of every wait: generous, for a loaded machine.
@@ -51,6 +52,16 @@ fn size(columns: u16, rows: u16) -> PtySize {
     }
 }
 
+/// An empty screen of this size, up to the largest frame that the program draws.
+fn screen(columns: u16, rows: u16) -> vt100::Parser {
+    let [columns, rows] = [columns, rows].map(up_to_the_largest_frame);
+    vt100::Parser::new(rows, columns, 0)
+}
+
+fn up_to_the_largest_frame(side: u16) -> NonZeroU16 {
+    nonzero(side.min(LARGEST_SIDE))
+}
+
 /// The program, independent of the environment of the test.
 pub fn program(arguments: &[&str]) -> CommandBuilder {
     let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_maxq-lab"));
@@ -76,7 +87,7 @@ impl Pty {
         let child = pair.slave.spawn_command(command).unwrap();
         drop(pair.slave);
         let output = Arc::new(Output {
-            parser: Mutex::new(vt100::Parser::new(nonzero(rows), nonzero(columns), 0)),
+            parser: Mutex::new(screen(columns, rows)),
             bytes: AtomicU64::new(0),
             stalled: AtomicBool::new(false),
             closing: AtomicBool::new(false),
@@ -157,7 +168,10 @@ impl Pty {
     pub fn resize(&mut self, columns: u16, rows: u16) {
         // Locked, so that no output for the new size reaches a screen of the old one.
         let mut parser = self.output.parser.lock().unwrap();
-        parser.set_size(nonzero(rows), nonzero(columns));
+        parser.set_size(
+            up_to_the_largest_frame(rows),
+            up_to_the_largest_frame(columns),
+        );
         let master = self.master.as_ref().unwrap();
         master.resize(size(columns, rows)).unwrap();
     }

@@ -26,7 +26,7 @@ use rustix::process::{Signal, kill_current_process_group};
 
 pub use jobs::Job;
 pub use screen::restore;
-pub use tty::{detach, is_attached, is_terminal};
+pub use tty::{LARGEST_SIDE, detach, is_attached, is_terminal};
 
 use jobs::Jobs;
 use keyboard::Keyboard;

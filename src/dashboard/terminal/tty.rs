@@ -20,6 +20,11 @@ use rustix::termios::{
 /// the bytes are still wanted.
 const SLICE: Duration = Duration::from_millis(20);
 
+/// Largest number of columns, and of rows, of a frame.
+///
+/// A terminal may claim any size; a frame beyond this limit would only take memory.
+pub const LARGEST_SIDE: u16 = 1000;
+
 /// A terminal with its own open file description, so that non-blocking mode does not affect the
 /// shell that started the program.
 #[derive(Debug)]
@@ -73,12 +78,14 @@ impl Tty {
         self.descriptor.as_fd()
     }
 
+    /// Returns the size of the window up to [`LARGEST_SIDE`]; a larger window is used in its top
+    /// left corner.
     pub(super) fn size(&self) -> Option<Size> {
         let size = tcgetwinsize(&self.descriptor).ok()?;
         // A serial line has no size and reports 0 by 0.
         match (size.ws_col, size.ws_row) {
             (0, _) | (_, 0) => Some(Size::new(80, 24)),
-            (width, height) => Some(Size::new(width, height)),
+            (width, height) => Some(Size::new(width.min(LARGEST_SIDE), height.min(LARGEST_SIDE))),
         }
     }
 
