@@ -295,6 +295,70 @@ fn a_run_folder_does_not_hide_a_built_in_scenario_of_the_same_name() {
 }
 
 #[test]
+fn force_leaves_files_that_are_not_the_runs_own() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("run");
+    run_in(&folder, &short(&[]), 5, &threads(2));
+    let own = ["notes.txt", "generations/sketch.svg", "plots/a.png"].map(|name| folder.join(name));
+    fs::create_dir(folder.join("plots")).unwrap();
+    for path in &own {
+        fs::write(path, "years of work").unwrap();
+    }
+    let done = output(run(&folder).arg("--force"));
+    assert!(done.status.success());
+    let said = stderr(&done);
+    assert!(said.contains("run: notes.txt, plots"), "{said}");
+    for path in &own {
+        assert_eq!(fs::read_to_string(path).unwrap(), "years of work");
+    }
+    Record::of(&folder).assert_same(
+        &common::record(&short(&[]), 1, &threads(2)),
+        "beside the user's files",
+    );
+}
+
+#[test]
+fn a_symbolic_link_is_no_place_for_a_new_run() {
+    let parent = TempDir::new().unwrap();
+    let (folder, link) = (parent.path().join("run"), parent.path().join("link"));
+    run_in(&folder, &short(&[]), 5, &threads(2));
+    let before = Record::of(&folder);
+    std::os::unix::fs::symlink(&folder, &link).unwrap();
+    for force in [&["--force"][..], &[]] {
+        let said = refused(run(&link).args(force));
+        assert!(said.contains("link: found a symbolic link"), "{said}");
+    }
+    Record::of(&folder).assert_same(&before, "after the refusals");
+}
+
+#[test]
+fn export_writes_over_no_file_of_a_run() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("run");
+    run_in(&folder, &short(&[]), 5, &threads(2));
+    let before = Record::of(&folder);
+    for name in [
+        "events.jsonl",
+        "checkpoint.json",
+        "run.json",
+        "generations/000001.json",
+        "generations/../summary.json",
+    ] {
+        let to = folder.join(name);
+        let said = refused(program().arg("export").arg(&folder).arg("--out").arg(&to));
+        assert!(said.contains("a file of a run or study"), "{said}");
+    }
+    Record::of(&folder).assert_same(&before, "after the refusals");
+    let to = folder.join("table.csv");
+    assert!(
+        output(program().arg("export").arg(&folder).arg("--out").arg(&to))
+            .status
+            .success()
+    );
+    assert!(to.is_file());
+}
+
+#[test]
 fn force_deletes_only_run_folders() {
     let parent = TempDir::new().unwrap();
     let folder = parent.path().join("thesis");

@@ -21,7 +21,7 @@ use maxq_lab::evolution::Origin;
 use maxq_lab::lab::{Event, Keep, RunFolder, read_events};
 use maxq_lab::report::{
     Arm, Base, Facts, Plan, Reevaluation, RunState, StatusWatch, Study, StudyControls, StudyEvent,
-    run_study, status,
+    StudyRun, run_study, status,
 };
 use maxq_lab::scenario::EMBEDDED;
 
@@ -278,6 +278,52 @@ fn a_look_reads_only_what_has_changed() {
     do_all(&study);
     let ends = watch.look().into_iter().map(|status| status.stage);
     assert!(ends.eq([RunState::Done, RunState::Done]));
+}
+
+#[test]
+fn a_run_is_done_only_as_the_run_of_this_plan() {
+    let parent = tempfile::tempdir().unwrap();
+    let mut changed = plan(&[Base::Evolved]);
+    let study = Study::create(changed.clone(), parent.path()).unwrap();
+    do_all(&study);
+    let stages =
+        |study: &Study| -> Vec<_> { status(study).into_iter().map(|run| run.stage).collect() };
+    assert_eq!(stages(&study), [RunState::Done, RunState::Done]);
+
+    // A damaged log: the checkpoint holds its checksum.
+    let log = study.run_folder(&study.runs()[0]).join("events.jsonl");
+    let whole = fs::read_to_string(&log).unwrap();
+    fs::write(&log, whole.replacen("\"rank\":1", "\"rank\":9", 1)).unwrap();
+    let damaged = status(&study).remove(0);
+    assert_eq!(damaged.stage, RunState::Unreadable);
+    assert!(
+        damaged
+            .trouble
+            .unwrap()
+            .contains("events.jsonl: found CRC-32")
+    );
+    assert!(Facts::read(&study, &study.runs()[0]).is_err());
+    fs::write(&log, whole).unwrap();
+
+    // A plan that was edited after its runs.
+    changed.scenarios[0].learning.discount = 0.5;
+    fs::write(parent.path().join("study.json"), changed.to_file().unwrap()).unwrap();
+    let edited = Study::open(parent.path()).unwrap();
+    for run in status(&edited) {
+        assert_eq!(run.stage, RunState::Unreadable);
+        assert!(run.trouble.unwrap().contains("holds another run"));
+    }
+    let controls = StudyControls::default();
+    for run in edited.runs() {
+        let run = StudyRun {
+            study: &edited,
+            run,
+            keep: Keep::None,
+            controls: &controls,
+        };
+        let error = run.finish().unwrap_err().to_string();
+        assert!(error.contains("holds another run"), "{error}");
+    }
 }
 
 #[test]

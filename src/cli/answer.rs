@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::args::useful_threads;
 use super::output::{CommandResult, Failure, Format};
 use super::signals::{SignalWatcher, Termination};
 use crate::evolution::Workers;
@@ -19,7 +20,7 @@ pub(super) struct AnswerArgs {
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub(super) seed: u64,
 
-    /// Number of threads; 0 means one per processor.
+    /// Number of threads, at most one per processor; 0 means one per processor.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: u16,
 
@@ -53,7 +54,7 @@ impl AnswerArgs {
         let experiment = experiment(scenario, self.seed)?;
         let answer = compute(Resources {
             experiment: &*experiment,
-            workers: &Workers::new(usize::from(self.threads))?,
+            workers: &Workers::new(useful_threads(self.threads).get())?,
             gate: &gate,
         });
         if let Some(code) = termination.exit_code() {

@@ -1,5 +1,6 @@
 //! Arguments that several commands share.
 
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
@@ -7,6 +8,7 @@ use clap::{Args, ValueEnum};
 use super::dashboard::DashboardArgs;
 use super::output::{Failure, Format};
 use crate::dashboard::terminal;
+use crate::evolution::processors;
 use crate::lab::inspection::Start;
 use crate::lab::{AnyExperiment, Keep, MANIFEST, RunOptions};
 use crate::scenario::{EMBEDDED, Scenario};
@@ -86,7 +88,7 @@ impl OnHangup {
 /// How a run is executed and shown.
 #[derive(Clone, Debug, Args)]
 pub(super) struct ExecutionArgs {
-    /// Number of threads; 0 means one per processor.
+    /// Number of threads, at most one per processor; 0 means one per processor.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: u16,
 
@@ -117,7 +119,7 @@ impl ExecutionArgs {
     /// The options of the run.
     pub(super) fn options(&self, force: bool) -> RunOptions {
         RunOptions {
-            threads: usize::from(self.threads),
+            threads: useful_threads(self.threads).get(),
             keep: self.keep,
             force,
         }
@@ -136,4 +138,11 @@ impl ExecutionArgs {
         ];
         words.map(String::from).to_vec()
     }
+}
+
+/// Returns how many of the threads asked for are started: more than processors only get in each
+/// other's way.
+pub(super) fn useful_threads(asked: u16) -> NonZeroUsize {
+    let most = processors();
+    NonZeroUsize::new(usize::from(asked)).map_or(most, |asked| asked.min(most))
 }

@@ -87,7 +87,7 @@ impl Args {
             trials: count(self.trials),
             repeats: count(self.repeats),
             // A set that no repeat uses is not trained.
-            primitive_sets: count(self.primitive_sets.min(self.repeats)),
+            primitive_sets: count(self.primitive_sets),
         };
         let started = Instant::now();
         let bar = repeats(self.repeats);
@@ -102,7 +102,7 @@ impl Args {
             seed: self.answer.seed,
             warmup: protocol.warmup,
             trials: protocol.trials,
-            primitive_sets: protocol.primitive_sets,
+            primitive_sets: protocol.primitive_sets.min(protocol.repeats),
             control_steps_per_second: computed / started.elapsed().as_secs_f64(),
             scored,
         })

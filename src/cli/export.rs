@@ -1,14 +1,15 @@
 //! `maxq-lab export`: writes tables, figures and hierarchies of runs and studies.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::ValueEnum;
 
 use super::output::{self, CommandResult, Failure};
 use crate::files::write_atomically;
+use crate::lab::is_record;
 use crate::report::figures::{Figure, FigureNumber, RunSource, study_figure};
-use crate::report::{Study, read_facts, run_export, study_export};
+use crate::report::{PLAN_FILE, Study, read_facts, run_export, study_export};
 
 /// Export tables, figures and hierarchies of a run or a study.
 ///
@@ -64,7 +65,17 @@ const COLUMNS: usize = 80;
 
 /// Runs `maxq-lab export`.
 pub(super) fn main(args: &Args) -> CommandResult {
-    let text = if args.dir.join("study.json").is_file() {
+    if let Some(path) = args
+        .out
+        .as_ref()
+        .filter(|path| is_record(path) || is_plan(path))
+    {
+        let path = path.display();
+        let message =
+            format!("--out: found {path}, a file of a run or study; allowed: another file");
+        return Err(message.into());
+    }
+    let text = if is_plan(&args.dir.join(PLAN_FILE)) {
         of_study(args)?
     } else {
         of_run(args)?
@@ -75,6 +86,11 @@ pub(super) fn main(args: &Args) -> CommandResult {
             .map_err(|error| format!("{}: {error}", path.display()))?,
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Returns whether `path` is the plan of a study.
+fn is_plan(path: &Path) -> bool {
+    path.ends_with(PLAN_FILE) && path.is_file()
 }
 
 fn of_run(args: &Args) -> Result<String, Failure> {

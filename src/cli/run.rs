@@ -64,7 +64,16 @@ pub(super) fn main(args: Args) -> CommandResult {
     let execution = &args.execution;
     let signals = SignalWatcher::start()?;
     let dashboard = execution.dashboard.unless(execution.headless)?;
+    let kept = if args.force {
+        RunFolder::foreign_files(&folder)
+    } else {
+        Vec::new()
+    };
     let run = start(scenario, args.seed, &folder, &execution.options(args.force))?;
+    if !kept.is_empty() {
+        let folder = folder.display();
+        output::message(&format!("note: kept in {folder}: {}", kept.join(", ")));
+    }
     live::follow(run, dashboard, signals, execution)
 }
 

@@ -17,5 +17,5 @@ pub use evolve::{Evolution, EvolutionState};
 pub use experiment::{Experiment, ExperimentError, TreeError, read_tree};
 pub use individual::{Individual, Inherited, Mutation, Origin, Parent};
 pub use mutation::mutated;
-pub use parallel::Workers;
+pub use parallel::{Workers, processors};
 pub use record::{GenerationRecord, RankedRecord, TrialRecord};

@@ -1,6 +1,8 @@
 //! Threads for independent pieces of work.
 
+use std::num::NonZeroUsize;
 use std::sync::{Mutex, PoisonError};
+use std::{env, thread};
 
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
@@ -16,14 +18,24 @@ pub struct Workers {
     pool: ThreadPool,
 }
 
+/// Returns the number of processors that this process may use: those that Slurm has given to the
+/// task, or else those that the operating system allows.
+#[must_use]
+pub fn processors() -> NonZeroUsize {
+    let allowed = thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let given = env::var("SLURM_CPUS_PER_TASK").ok();
+    let given = given.and_then(|text| text.parse().ok());
+    given.map_or(allowed, |given: NonZeroUsize| given.min(allowed))
+}
+
 impl Workers {
-    /// Starts `threads` threads, or one for each processor if that is 0.
+    /// Starts `threads` threads, or one for each of the [`processors`] if that is 0.
     ///
     /// # Errors
     /// When the operating system refuses to start threads.
     pub fn new(threads: usize) -> Result<Self, ThreadPoolBuildError> {
         let pool = ThreadPoolBuilder::new()
-            .num_threads(threads)
+            .num_threads(NonZeroUsize::new(threads).unwrap_or_else(processors).get())
             .thread_name(|index| format!("worker-{index}"))
             .build()?;
         Ok(Self { pool })

@@ -20,7 +20,8 @@ pub struct Protocol {
     pub trials: usize,
     /// Number of fresh hierarchies.
     pub repeats: usize,
-    /// Separately trained sets of primitive subtasks; repeat `i` uses set `i % primitive_sets`.
+    /// Separately trained sets of primitive subtasks, of which at most `repeats` are trained;
+    /// repeat `i` uses set `i % primitive_sets`.
     pub primitive_sets: usize,
 }
 
@@ -89,12 +90,13 @@ pub fn evaluate<W: World>(
     gate: &Gate,
     progress: impl Fn(usize) + Sync,
 ) -> Result<Scored, Stopped> {
-    let sets = (0..protocol.primitive_sets)
+    // A set beyond the number of repeats would be trained for nothing.
+    let sets = (0..protocol.primitive_sets.min(protocol.repeats))
         .map(|set| experiment.train(seed, set as u64, workers, gate))
         .collect::<Result<Vec<_>, _>>()?;
     let done = AtomicUsize::new(0);
     let repeats = workers.map((0..protocol.repeats).collect(), |repeat| {
-        let set = &sets[repeat % protocol.primitive_sets];
+        let set = &sets[repeat % sets.len()];
         let scored = one_repeat(experiment, seed, tree, protocol, repeat, set, gate)?;
         progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         Ok(scored)

@@ -11,6 +11,7 @@ use tempfile::TempDir;
 
 use super::folder_error::{FolderError, Occupied};
 use super::manifest::{MANIFEST_FORMAT, Manifest};
+use super::pulse::PULSE_FILE;
 use crate::files::{
     FileError, WRITING, clean, parse_json, read_text, stated_format, sync_folder, without_path,
     write_atomically,
@@ -25,6 +26,23 @@ pub const CHECKPOINT: &str = "checkpoint.json";
 pub const EVENTS: &str = "events.jsonl";
 /// Name of the file with the result.
 pub const SUMMARY: &str = "summary.json";
+
+/// Name of the file with the evaluation of the winner, which studies write.
+pub const EVALUATION: &str = "evaluation.json";
+/// Name of the file that the process working on a run keeps locked.
+const LOCK: &str = "lock";
+/// Name of the folder of kept checkpoints.
+const GENERATIONS: &str = "generations";
+
+/// The files and folders of a run, apart from `run.json` and the lock.
+const OWN: [&str; 6] = [
+    SUMMARY,
+    EVALUATION,
+    CHECKPOINT,
+    EVENTS,
+    PULSE_FILE,
+    GENERATIONS,
+];
 
 /// Prefix of the names of run folders under construction.
 const NEW_RUN: &str = ".new-run-";
@@ -110,8 +128,9 @@ impl RunFolder {
     /// found later is complete.
     ///
     /// # Errors
-    /// When `path` exists already, or the operating system refuses. With `force`, an existing run
-    /// folder is replaced unless another process works on it.
+    /// When `path` exists already, or the operating system refuses. With `force`, the run in an
+    /// existing folder is replaced unless another process works on it; files that are not the run's
+    /// own stay.
     pub fn create(path: &Path, manifest: &Manifest, force: bool) -> Result<Self, FolderError> {
         let parent = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -119,7 +138,9 @@ impl RunFolder {
         };
         fs::create_dir_all(parent).map_err(|error| io_error(parent, error))?;
         clean(parent, NEW_RUN, ABANDONED).map_err(|error| io_error(parent, error))?;
-        let replaced = Self::make_room(path, parent, manifest, force)?;
+        if let Some(replaced) = Self::replace(path, manifest, force)? {
+            return Ok(replaced);
+        }
         let fresh = temporary(parent)?;
         let folder = Self {
             path: fresh.path().to_owned(),
@@ -128,7 +149,6 @@ impl RunFolder {
         folder.write_manifest(manifest)?;
         let generations = folder.generations();
         fs::create_dir(&generations).map_err(|error| io_error(&generations, error))?;
-        drop(replaced);
         fs::rename(fresh.path(), path).map_err(|error| match error.kind() {
             io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::NotADirectory => {
                 occupied(path, manifest)
@@ -144,14 +164,14 @@ impl RunFolder {
         })
     }
 
-    /// Removes what stands in the way of a new run folder, and returns the lock of the run that
-    /// was there. An empty folder may stay.
-    fn make_room(
-        path: &Path,
-        parent: &Path,
-        manifest: &Manifest,
-        force: bool,
-    ) -> Result<Option<Self>, FolderError> {
+    /// Replaces the run in an existing folder; returns `None` if the folder does not exist or is
+    /// empty. Files that are not the run's own stay.
+    fn replace(path: &Path, manifest: &Manifest, force: bool) -> Result<Option<Self>, FolderError> {
+        if path.is_symlink() {
+            return Err(FolderError::Link {
+                path: path.display().to_string(),
+            });
+        }
         let mut entries = match fs::read_dir(path) {
             Ok(entries) => entries,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -163,12 +183,39 @@ impl RunFolder {
         if !force || !path.join(MANIFEST).is_file() {
             return Err(occupied(path, manifest));
         }
-        let old = Self::open(path)?;
-        // Removed in one step: a process that is killed here leaves no half of a run.
-        let aside = temporary(parent)?;
-        fs::rename(path, aside.path().join("replaced")).map_err(|error| io_error(path, error))?;
-        aside.close().map_err(|error| io_error(path, error))?;
-        Ok(Some(old))
+        let folder = Self::open(path)?;
+        for name in OWN {
+            let own = path.join(name);
+            let removed = if own.is_dir() && !own.is_symlink() {
+                remove_generations(&own)
+            } else {
+                fs::remove_file(&own)
+            };
+            match removed {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                    return Err(io_error(&own, error));
+                }
+                _ => {}
+            }
+        }
+        let generations = folder.generations();
+        fs::create_dir_all(&generations).map_err(|error| io_error(&generations, error))?;
+        // Written last: until then the folder is found as the old run, without its results.
+        folder.write_manifest(manifest)?;
+        Ok(Some(folder))
+    }
+
+    /// Returns the names of files in a run folder that do not belong to the run, in order.
+    #[must_use]
+    pub fn foreign_files(path: &Path) -> Vec<String> {
+        let entries = fs::read_dir(path).into_iter().flatten().flatten();
+        let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        let own = |name: &str| name == MANIFEST || name == LOCK || OWN.contains(&name);
+        let mut foreign: Vec<_> = names
+            .filter(|name| !own(name) && !name.starts_with(WRITING))
+            .collect();
+        foreign.sort();
+        foreign
     }
 
     /// Opens an existing run folder for writing.
@@ -224,7 +271,7 @@ impl RunFolder {
     /// Returns the path of the folder of kept checkpoints.
     #[must_use]
     pub fn generations(&self) -> PathBuf {
-        self.path.join("generations")
+        self.path.join(GENERATIONS)
     }
 
     /// Returns the path of the kept checkpoint of a generation.
@@ -272,6 +319,45 @@ impl RunFolder {
     }
 }
 
+/// Removes the kept checkpoints of a run, and their folder if nothing else is in it.
+fn remove_generations(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if is_kept_checkpoint(&path) {
+            fs::remove_file(path)?;
+        }
+    }
+    match fs::remove_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => Ok(()),
+        removed => removed,
+    }
+}
+
+/// Returns whether a path ends as those of [`RunFolder::generation`] do.
+fn is_kept_checkpoint(path: &Path) -> bool {
+    let stem = path.file_stem().and_then(|stem| stem.to_str());
+    let is_number = |stem: &str| stem.len() >= 6 && stem.bytes().all(|byte| byte.is_ascii_digit());
+    path.extension()
+        .is_some_and(|extension| extension == "json")
+        && stem.is_some_and(is_number)
+}
+
+/// Returns whether `path` is a file of a run, which only the process working on the run may write.
+#[must_use]
+pub fn is_record(path: &Path) -> bool {
+    let (Some(name), Some(parent)) = (path.file_name(), path.parent()) else {
+        return false;
+    };
+    // An empty parent is the present folder.
+    let Ok(parent) = Path::new(".").join(parent).canonicalize() else {
+        return false;
+    };
+    let of_run = |folder: &Path| folder.join(MANIFEST).is_file();
+    let own = name == MANIFEST || name == LOCK || OWN.iter().any(|&own| name == own);
+    let is_kept = parent.ends_with(GENERATIONS) && is_kept_checkpoint(Path::new(name));
+    (own && of_run(&parent)) || (is_kept && parent.parent().is_some_and(of_run))
+}
+
 /// Creates a folder with a unique name, which is deleted unless it is kept.
 fn temporary(parent: &Path) -> Result<TempDir, FolderError> {
     let mut builder = tempfile::Builder::new();
@@ -283,7 +369,7 @@ fn temporary(parent: &Path) -> Result<TempDir, FolderError> {
 }
 
 fn lock(folder: &Path) -> Result<Lock, FolderError> {
-    let path = folder.join("lock");
+    let path = folder.join(LOCK);
     let file = OpenOptions::new()
         .create(true)
         .truncate(false)

@@ -19,6 +19,12 @@ pub enum FolderError {
         /// What it holds.
         by: Occupied,
     },
+    /// The path of a new run folder is a symbolic link, which could lead to somebody else's files.
+    #[error("{path}: found a symbolic link; allowed: a folder, or a path that does not exist yet")]
+    Link {
+        /// The path.
+        path: String,
+    },
     /// It is not a run folder.
     #[error("{path}: holds no run.json; allowed: a run folder")]
     NotARun {

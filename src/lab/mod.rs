@@ -37,7 +37,7 @@ pub use difference::{Difference, differences, overrides, summarise, with_changes
 pub use evaluate::{Evaluation, Protocol, Repeat, Scored, evaluate};
 pub use event::{Ending, Event};
 pub use experiment::AnyExperiment;
-pub use folder::{CHECKPOINT, EVENTS, Keep, MANIFEST, RunFolder, SUMMARY};
+pub use folder::{CHECKPOINT, EVALUATION, EVENTS, Keep, MANIFEST, RunFolder, SUMMARY, is_record};
 pub use folder_error::{FolderError, Occupied};
 pub use follower::Follower;
 pub use integrity::check_log;

@@ -1,5 +1,6 @@
 //! Starts and resumes runs.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
 
@@ -16,7 +17,7 @@ use super::outcome::Outcome;
 use super::run_error::RunError;
 use super::work::Work;
 use super::world_experiment::experiment;
-use crate::evolution::Workers;
+use crate::evolution::{Workers, processors};
 use crate::files::FileError;
 use crate::scenario::{PrimitiveLearning, Scenario};
 
@@ -154,8 +155,12 @@ pub fn resume(
 }
 
 fn workers(scenario: &Scenario, options: &RunOptions) -> Result<Workers, RunError> {
+    let wanted = NonZeroUsize::new(options.threads).unwrap_or_else(processors);
     let threads = match scenario.learning.primitive_learning {
-        PrimitiveLearning::Frozen | PrimitiveLearning::Individual => options.threads,
+        // More threads than individuals would have nothing to do.
+        PrimitiveLearning::Frozen | PrimitiveLearning::Individual => {
+            wanted.get().min(scenario.evolution.population_size)
+        }
         // All individuals train one shared copy, one after the other.
         PrimitiveLearning::Shared => 1,
     };

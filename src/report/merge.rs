@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::arm::ArmError;
-use super::results::{EVALUATION, PlannedRun, StudyRunError, evaluation};
+use super::results::{PlannedRun, StudyRunError, evaluation};
 use super::study::{RunId, Study, StudyError};
 use crate::files::{FileError, sync_folder};
-use crate::lab::{CHECKPOINT, EVENTS, FolderError, MANIFEST, RunFolder};
+use crate::lab::{CHECKPOINT, EVALUATION, EVENTS, FolderError, MANIFEST, RunFolder};
 
 /// Files of a run that depend on the plan alone.
 const DETERMINED: [&str; 3] = [EVENTS, CHECKPOINT, EVALUATION];

@@ -18,7 +18,7 @@ use crate::scenario::{EMBEDDED_PLANS, Scenario, ScenarioError};
 pub const PLAN_FORMAT: u32 = 1;
 
 /// The file in the folder of a study that holds its plan.
-pub(super) const PLAN_FILE: &str = "study.json";
+pub const PLAN_FILE: &str = "study.json";
 
 /// Largest plan that is read, in bytes. A plan may hold many scenarios.
 pub const MAX_PLAN_BYTES: u64 = 1 << 24;

@@ -11,14 +11,11 @@ use super::arm::ArmError;
 use super::study::{RunId, Study};
 use crate::files::{FileError, parse_json, read_text};
 use crate::lab::{
-    Evaluation, FolderError, MANIFEST, Manifest, Outcome, RunError, RunFolder, SetupError,
-    check_log,
+    EVALUATION, Evaluation, FolderError, MANIFEST, Manifest, Outcome, RunError, RunFolder,
+    SetupError, check_log,
 };
 use crate::learning::Stopped;
 use crate::scenario::Scenario;
-
-/// The file with the evaluation of the winner of a run.
-pub(super) const EVALUATION: &str = "evaluation.json";
 
 /// Version of the format of `evaluation.json`.
 pub(super) const EVALUATION_FORMAT: u32 = 1;

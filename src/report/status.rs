@@ -5,10 +5,12 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::results::{EVALUATION, PlannedRun, StudyRunError, evaluation};
+use super::results::{PlannedRun, StudyRunError, evaluation};
 use super::study::{RunId, Study};
 use crate::files::Stamp;
-use crate::lab::{Event, Follower, Liveness, MANIFEST, News, Recording, RunError, SUMMARY};
+use crate::lab::{
+    EVALUATION, Event, Follower, Liveness, MANIFEST, News, Recording, RunError, SUMMARY,
+};
 
 /// The state of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

@@ -6,15 +6,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::arm::{Arm, Base};
 use super::results::{
-    EVALUATION, EVALUATION_FORMAT, PlannedRun, StudyRunError, WinnerEvaluation, check_evaluation,
-    evaluation, evaluation_seed,
+    EVALUATION_FORMAT, PlannedRun, StudyRunError, WinnerEvaluation, check_evaluation, evaluation,
+    evaluation_seed,
 };
 use super::study::{RunId, Study};
 use crate::evolution::Workers;
 use crate::files::{FileError, write_atomically};
 use crate::lab::{
-    Controls, FolderError, Keep, MANIFEST, Outcome, Protocol, Run, RunError, RunFolder, RunOptions,
-    SUMMARY, experiment, resume, start,
+    Controls, EVALUATION, FolderError, Keep, MANIFEST, Outcome, Protocol, Run, RunError, RunFolder,
+    RunOptions, SUMMARY, experiment, resume, start,
 };
 use crate::learning::{Gate, Stopped};
 use crate::scenario::Scenario;

@@ -16,6 +16,7 @@ mod common;
 mod anything;
 mod arguments;
 mod control_characters;
+mod damaged_logs;
 mod rules;
 mod run_folders;
 mod scenario_files;

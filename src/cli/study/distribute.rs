@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use super::StudyArgs;
 use crate::cli::output::{self, CommandResult};
 use crate::lab::shell_word;
-use crate::report::{Study, merge};
+use crate::report::{PLAN_FILE, Study, merge};
 
 /// The largest job array that Slurm allows by default (MaxArraySize 1001).
 const MAX_TASKS: usize = 1000;
@@ -70,7 +70,7 @@ impl ProgramArg {
     fn command(&self, study: &Study) -> String {
         let word = |path: &Path| shell_word(&path.display().to_string());
         let (program, folder) = (shell_word(&self.program), word(&study.folder));
-        let plan = word(&study.folder.join("study.json"));
+        let plan = word(&study.folder.join(PLAN_FILE));
         format!("{program} study {plan} --out {folder} --jobs 1 --headless --only")
     }
 }

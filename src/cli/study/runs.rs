@@ -1,6 +1,5 @@
 //! Does the runs of a study in this process, with a table on a terminal.
 
-use std::num::NonZeroUsize;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::thread;
@@ -8,7 +7,7 @@ use std::thread;
 use super::Args;
 use super::progress::Progress;
 use super::table;
-use crate::cli::args::OnHangup;
+use crate::cli::args::{OnHangup, useful_threads};
 use crate::cli::dashboard::DashboardSettings;
 use crate::cli::live::{PATIENCE, continues, end_within};
 use crate::cli::output::{self, CommandResult, Failure};
@@ -23,7 +22,7 @@ pub(super) fn main(args: &Args) -> CommandResult {
     let study = args.study.create()?;
     let signals = SignalWatcher::start()?;
     let dashboard = args.dashboard.unless(args.headless)?;
-    let jobs = jobs(args.jobs);
+    let jobs = useful_threads(args.jobs);
     let work = Arc::new(OwnWork {
         controls: StudyControls::default(),
         progress: Progress::new(&study, &runs, jobs.get()),
@@ -145,9 +144,4 @@ fn selected(study: &Study, only: &[String]) -> Result<Vec<RunId>, Failure> {
     runs.sort_by_key(|run| run.number);
     runs.dedup();
     Ok(runs)
-}
-
-fn jobs(asked: u16) -> NonZeroUsize {
-    let all = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-    NonZeroUsize::new(usize::from(asked)).unwrap_or_else(all)
 }
