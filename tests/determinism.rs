@@ -11,7 +11,7 @@ mod common;
 
 use std::time::Duration;
 
-use common::{Record, record, short, smoke, threads, wait_until};
+use common::{Record, record, short, threads, wait_until};
 use crossbeam_channel::never;
 use maxq_lab::lab::{Activity, Controls, Event, Run, RunOptions, read_events, start};
 use maxq_lab::random::{Purpose, stream};

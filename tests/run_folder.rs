@@ -345,15 +345,27 @@ fn export_writes_over_no_file_of_a_run() {
         "generations/../summary.json",
     ] {
         let to = folder.join(name);
-        let said = refused(program().arg("export").arg(&folder).arg("--out").arg(&to));
+        let said = refused(
+            program()
+                .args(["export", "--format", "csv"])
+                .arg(&folder)
+                .arg("--out")
+                .arg(&to),
+        );
         assert!(said.contains("a file of a run or study"), "{said}");
     }
     Record::of(&folder).assert_same(&before, "after the refusals");
     let to = folder.join("table.csv");
     assert!(
-        output(program().arg("export").arg(&folder).arg("--out").arg(&to))
-            .status
-            .success()
+        output(
+            program()
+                .args(["export", "--format", "csv"])
+                .arg(&folder)
+                .arg("--out")
+                .arg(&to)
+        )
+        .status
+        .success()
     );
     assert!(to.is_file());
 }

@@ -128,7 +128,8 @@ impl Follower {
         if self.run.as_ref().is_none_or(|run| run.stamp != stamp) {
             let value = RunFolder::read_manifest(&self.folder)?;
             let is_same = self.run.as_ref().is_some_and(|run| {
-                run.value.started == value.started && run.value.scenario == value.scenario
+                let of = |run: &Manifest| (run.started.clone(), run.seed, run.scenario.clone());
+                of(&run.value) == of(&value)
             });
             if !is_same {
                 self.run = None;
