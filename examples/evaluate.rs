@@ -9,6 +9,7 @@ use maxq_lab::scenario::Scenario;
 
 const TREE: &str = "(Root Avoid Wander ApproachBattery ApproachNest)";
 
+/// Evaluates the hierarchy and prints its mean trial length.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let experiment = experiment(Scenario::load("smoke")?, 1)?;
     let tree = experiment.read_tree(TREE)?;

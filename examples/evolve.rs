@@ -6,6 +6,7 @@ use maxq_lab::hierarchy::{Glyphs, draw};
 use maxq_lab::lab::{Event, RunOptions, experiment, start};
 use maxq_lab::scenario::Scenario;
 
+/// Evolves, and prints each generation and the best hierarchy.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let scenario = Scenario::load("smoke")?;
     let parent = tempfile::tempdir()?;

@@ -110,11 +110,10 @@ fn commands(line: &str) -> Vec<Vec<String>> {
     let mut commands = vec![Vec::new()];
     let mut word: Option<String> = None;
     let mut quote = None;
-    let mut characters = line.chars();
     let finish = |word: &mut Option<String>, commands: &mut Vec<Vec<String>>| {
         commands.last_mut().unwrap().extend(word.take());
     };
-    while let Some(c) = characters.next() {
+    for c in line.chars() {
         match (quote, c) {
             (Some(open), c) if c == open => quote = None,
             (Some(_), c) => word.get_or_insert_default().push(c),

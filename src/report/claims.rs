@@ -90,7 +90,7 @@ impl Verdict {
 ///
 /// *Most* seeds show it if the exact 95 % interval of their proportion lies above one half.
 /// *More* or *fewer* seeds than under the control show it if the proportions differ by Fisher's
-/// exact test at the level [`SIGNIFICANCE`].
+/// exact test at the level `SIGNIFICANCE`.
 #[must_use]
 pub fn judge(tested: Count, control: Count) -> Verdict {
     if tested.n == 0 || control.n == 0 {
