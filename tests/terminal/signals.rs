@@ -9,7 +9,7 @@ use crate::{ENDLESS, Place, exists, leave, wait_for_end, wait_for_good_end};
 
 #[test]
 fn a_signal_saves_the_run_and_restores_the_terminal() {
-    for (signal, code) in [("TERM", 143), ("INT", 130)] {
+    for (signal, code) in [("TERM", 143), ("INT", 130), ("QUIT", 131)] {
         let place = Place::new();
         let mut pty = place.start(&[]);
         place.wait_for_evolution();
