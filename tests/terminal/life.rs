@@ -1,5 +1,8 @@
 //! A session: start, pause, step, resize, quit.
 
+use std::thread::sleep;
+use std::time::Duration;
+
 use maxq_lab::dashboard::terminal::LARGEST_SIDE;
 
 use crate::pty::{Pty, program};
@@ -76,6 +79,47 @@ fn a_terminal_of_an_absurd_size_is_drawn_to_in_its_top_left_corner() {
     pty.wait("a frame of the largest size", |pty| {
         pty.screen().lines().count() == usize::from(LARGEST_SIDE)
     });
+    leave(&mut pty);
+    place.assert_saved();
+}
+
+#[test]
+fn replies_of_the_terminal_and_pasted_text_are_not_keys() {
+    let place = Place::new();
+    let parent = place.folder.parent().unwrap();
+    let arguments = place.run(ENDLESS);
+    let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
+    let mut command = program(&arguments);
+    command.cwd(parent);
+    let mut pty = Pty::start(120, 40, command);
+    pty.wait_for("RUNNING");
+    pty.press("6");
+    pty.wait_for("rank");
+    for reads in [
+        &["\u{1b}]11;rgb:ecec/eaea/e4e4\u{1b}\\"][..],
+        &["\u{1b}]11;rgb:ecec/", "eaea/e4e4\u{7}"],
+        &["\u{1b}P>|tmux 3.5a\u{1b}", "\\"],
+        &["\u{1b}", "[?6c"],
+        &["\u{1b}[?6", "2;1c\u{1b}[24;80R"],
+        &["\u{1b}[200~pe3", "c\rq\u{1b}", "[201~"],
+    ] {
+        for read in reads {
+            pty.press(read);
+            sleep(Duration::from_millis(20));
+        }
+    }
+    pty.press("?");
+    pty.wait_for("Help");
+    // A lone ESC is still a key.
+    pty.press("\u{1b}");
+    pty.wait_gone("Help");
+    let screen = pty.screen();
+    assert!(
+        screen.contains("RUNNING") && screen.contains("rank"),
+        "{screen}"
+    );
+    let files = parent.read_dir().unwrap();
+    assert_eq!(files.count(), 1, "only the run folder");
     leave(&mut pty);
     place.assert_saved();
 }

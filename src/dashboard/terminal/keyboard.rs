@@ -8,17 +8,15 @@ use std::thread;
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use crossterm::event::{self, Event};
-use rustix::event::{PollFd, PollFlags, poll};
+use crossterm::event::Event;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
+use super::decoder::Decoder;
 use super::screen::Screen;
 
 /// Capacity of the queue; further keys stay in the terminal's own queue.
 const CAPACITY: usize = 1024;
-
-/// Time for crossterm to parse an event from available bytes.
-const MOMENT: Duration = Duration::from_millis(1);
 
 /// Longest wait for the reader to stop reading.
 const PATIENCE: Duration = Duration::from_millis(200);
@@ -52,11 +50,12 @@ impl Keyboard {
             silent: Mutex::new(true),
             changed: Condvar::new(),
         });
-        let reader = Reader {
+        let mut reader = Reader {
             screen,
             state: Arc::clone(&state),
             woken,
             sender,
+            decoder: Decoder::default(),
         };
         thread::Builder::new()
             .name(String::from("terminal input"))
@@ -101,6 +100,7 @@ struct Reader {
     state: Arc<State>,
     woken: UnixStream,
     sender: Sender<Event>,
+    decoder: Decoder,
 }
 
 impl Reader {
@@ -108,9 +108,13 @@ impl Reader {
     ///
     /// Every wait blocks in the operating system, so that a terminal that is gone is not polled
     /// in a busy loop.
-    fn run(self) {
+    fn run(&mut self) {
         while !self.state.ended.load(Ordering::SeqCst) {
             let listening = self.state.listening.load(Ordering::SeqCst);
+            if !listening {
+                // What follows was sent to another program.
+                self.decoder = Decoder::default();
+            }
             self.set_silent(!listening);
             if self.wait(listening).is_err() || (listening && self.read().is_err()) {
                 break;
@@ -119,37 +123,60 @@ impl Reader {
         self.set_silent(true);
     }
 
-    /// Waits until the reader is woken or, while it listens, there is something to read.
-    fn wait(&self, listening: bool) -> io::Result<()> {
+    /// Waits until the reader is woken or, while it listens, there is something to read or
+    /// nothing has come for too long.
+    fn wait(&mut self, listening: bool) -> io::Result<()> {
         let mut descriptors = [
             PollFd::new(&self.woken, PollFlags::IN),
             PollFd::from_borrowed_fd(self.screen.tty.descriptor(), PollFlags::IN),
         ];
         let waited_for = if listening { 2 } else { 1 };
-        match poll(&mut descriptors[..waited_for], None) {
-            Ok(_) | Err(Errno::INTR) => {}
+        let patience = self.decoder.patience();
+        let patience = patience.and_then(|time| Timespec::try_from(time).ok());
+        let ready = match poll(&mut descriptors[..waited_for], patience.as_ref()) {
+            Ok(ready) => Some(ready),
+            Err(Errno::INTR) => None,
             Err(error) => return Err(error.into()),
-        }
+        };
         let gone = PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL;
         if listening && descriptors[1].revents().intersects(gone) {
             return Err(io::ErrorKind::BrokenPipe.into());
+        }
+        if ready == Some(0) {
+            let event = self.decoder.give_up();
+            self.send(event)?;
         }
         let mut bytes = [0; 64];
         while matches!(io::Read::read(&mut &self.woken, &mut bytes), Ok(count) if count > 0) {}
         Ok(())
     }
 
-    fn read(&self) -> io::Result<()> {
-        while self.state.listening.load(Ordering::SeqCst) && event::poll(MOMENT)? {
-            let read = event::read()?;
-            // New sizes arrive with their signal.
-            let told = match read {
-                Event::Resize(..) => Ok(()),
-                event => self.sender.send(event),
-            };
-            told.map_err(|_| io::Error::from(io::ErrorKind::BrokenPipe))?;
+    /// Reads what is there.
+    fn read(&mut self) -> io::Result<()> {
+        let mut bytes = [0; 1024];
+        while self.state.listening.load(Ordering::SeqCst) {
+            match rustix::io::read(self.screen.tty.descriptor(), &mut bytes) {
+                Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
+                Ok(count) => self.decode(&bytes[..count])?,
+                Err(Errno::AGAIN) => return Ok(()),
+                Err(Errno::INTR) => {}
+                Err(error) => return Err(error.into()),
+            }
         }
         Ok(())
+    }
+
+    fn decode(&mut self, bytes: &[u8]) -> io::Result<()> {
+        for &byte in bytes {
+            let event = self.decoder.take(byte);
+            self.send(event)?;
+        }
+        Ok(())
+    }
+
+    fn send(&self, event: Option<Event>) -> io::Result<()> {
+        let sent = event.map_or(Ok(()), |event| self.sender.send(event));
+        sent.map_err(|_| io::ErrorKind::BrokenPipe.into())
     }
 
     fn set_silent(&self, is: bool) {

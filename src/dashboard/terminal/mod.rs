@@ -5,11 +5,13 @@
 //! again.
 
 mod cursor;
+mod decoder;
 mod jobs;
 mod keyboard;
 mod painter;
 mod pen;
 mod screen;
+mod sequences;
 mod style_runs;
 mod tty;
 mod writer;
