@@ -12,7 +12,7 @@ use super::signals::SignalWatcher;
 use crate::dashboard::keys::KeyMap;
 use crate::dashboard::look::{Look, Signs, Theme};
 use crate::dashboard::session::{Exit, Session, Source};
-use crate::dashboard::terminal::{Terminal, is_terminal};
+use crate::dashboard::terminal::{Abilities, Terminal, is_terminal};
 use crate::dashboard::{App, Config, Mode, RunsTable, ViewContext};
 use crate::hierarchy::Glyphs;
 use crate::lab::AnyExperiment;
@@ -22,11 +22,13 @@ use crate::lab::inspection::{Archive, Start};
 #[derive(Clone, Debug, Args)]
 pub(super) struct AppearanceArgs {
     /// Colour theme: dark, light, high-contrast, mono, or one from the configuration file
-    /// [default: from the configuration file; mono if NO_COLOR is set; otherwise dark].
+    /// [default: from the configuration file; mono if NO_COLOR is set or the terminal has no
+    /// colours; otherwise dark].
     #[arg(long, value_name = "NAME")]
     theme: Option<String>,
 
-    /// Draw with ASCII characters only [default: if the locale is not UTF-8].
+    /// Draw with ASCII characters only [default: if the locale is not UTF-8, or on the Linux
+    /// console].
     #[arg(long)]
     ascii: bool,
 
@@ -37,22 +39,23 @@ pub(super) struct AppearanceArgs {
 }
 
 impl AppearanceArgs {
-    /// Reads the configuration file and the environment.
-    pub(super) fn load(&self) -> Result<(Look, KeyMap), Failure> {
+    /// Reads the configuration file and the environment, for a terminal with these abilities.
+    pub(super) fn load(&self, abilities: Abilities) -> Result<(Look, KeyMap), Failure> {
         let default = || Config::default_path().filter(|path| path.exists());
         let config = match self.config.clone().or_else(default) {
             Some(path) => Config::load(&path)?,
             None => Config::default(),
         };
-        let glyphs = if self.ascii {
+        let glyphs = if self.ascii || !abilities.braille {
             Glyphs::Ascii
         } else {
             Glyphs::of_locale()
         };
         let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let mono = no_colour || !abilities.colour;
         let (themes, first) = match &self.theme {
             Some(theme) => (config.themes, theme.clone()),
-            None if no_colour => (vec![Theme::mono()], String::from("mono")),
+            None if mono => (vec![Theme::mono()], String::from("mono")),
             None => (config.themes, config.theme),
         };
         if !themes.iter().any(|theme| theme.name == first) {
@@ -90,8 +93,12 @@ fn frames(text: &str) -> Result<f64, String> {
 
 /// Whether the program has a terminal that can show a dashboard.
 fn is_possible() -> bool {
-    let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-    is_terminal() && !dumb
+    is_terminal() && terminal_type() != "dumb"
+}
+
+/// The name of the type of the terminal.
+fn terminal_type() -> String {
+    std::env::var("TERM").unwrap_or_default()
 }
 
 impl DashboardArgs {
@@ -132,7 +139,7 @@ impl DashboardArgs {
 
     /// Reads the settings, so that mistakes are reported before anything is computed.
     fn load(&self) -> Result<DashboardSettings, Failure> {
-        let (look, keys) = self.appearance.load()?;
+        let (look, keys) = self.appearance.load(Abilities::of_type(&terminal_type()))?;
         Ok(DashboardSettings {
             look,
             keys,

@@ -9,7 +9,7 @@ use super::args::StartArg;
 use super::dashboard::AppearanceArgs;
 use super::output::{self, CommandResult};
 use crate::dashboard::keys::Key;
-use crate::dashboard::terminal::LARGEST_SIDE;
+use crate::dashboard::terminal::{Abilities, LARGEST_SIDE};
 use crate::dashboard::{
     App, Effect, FrameFormat, Input, Mode, OffscreenDashboard, ViewContext, ViewId, render,
 };
@@ -100,7 +100,7 @@ pub(super) fn main(args: &Args) -> CommandResult {
     }
     let keys: Result<Vec<Key>, _> = args.keys.split_ascii_whitespace().map(str::parse).collect();
     let keys = keys.map_err(|error| format!("--keys: {error}"))?;
-    let (look, key_map) = args.appearance.load()?;
+    let (look, key_map) = args.appearance.load(Abilities::ALL)?;
     let recording = Recording::read(&args.run_dir)?;
     let lived = recording.generations();
     if let Some(found) = args.generation.filter(|found| !(1..=lived).contains(found)) {

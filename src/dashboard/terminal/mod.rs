@@ -4,6 +4,7 @@
 //! wait for it: one that writes and one that reads. A terminal that is gone is never used
 //! again.
 
+mod abilities;
 mod cursor;
 mod decoder;
 mod jobs;
@@ -26,6 +27,7 @@ use ratatui::Frame;
 use ratatui::layout::Size;
 use rustix::process::{Signal, kill_current_process_group};
 
+pub use abilities::Abilities;
 pub use jobs::Job;
 pub use screen::restore;
 pub use tty::{LARGEST_SIDE, detach, is_attached, is_terminal};
