@@ -11,6 +11,9 @@ use crate::scenario::Scenario;
 
 /// Validate scenario files and study plans.
 ///
+/// What is odd about a scenario, though it is valid, is a warning. Warnings do not change the
+/// exit code.
+///
 /// With --format json, complete scenarios are printed, including defaults: every setting that
 /// 'maxq-lab run --set' can change.
 #[derive(Debug, clap::Args)]
@@ -39,6 +42,8 @@ struct Report {
     valid: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     scenario: Option<Scenario>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -54,7 +59,10 @@ pub(super) fn main(args: &Args) -> CommandResult {
         Format::Text => {
             for report in &reports {
                 match &report.error {
-                    None => output::text(&format!("{}: valid\n", report.file))?,
+                    None => {
+                        output::text(&format!("{}: valid\n", report.file))?;
+                        output::warnings(&report.file, &report.warnings);
+                    }
                     Some(error) => output::message(&format!("error: {error}")),
                 }
             }
@@ -70,6 +78,7 @@ impl Report {
             file: file.to_owned(),
             valid: false,
             error: None,
+            warnings: Vec::new(),
             scenario: None,
             plan: None,
         };
@@ -78,6 +87,8 @@ impl Report {
         } else {
             checked_scenario(file, settings).map(|scenario| report.scenario = Some(scenario))
         };
+        let warnings = report.scenario.iter().flat_map(Scenario::warnings);
+        report.warnings = warnings.map(|warning| warning.to_string()).collect();
         report.valid = result.is_ok();
         report.error = result.err();
         report

@@ -73,6 +73,13 @@ pub(super) fn message(text: &str) {
     let _ = writeln!(io::stderr(), "{}", visible(text));
 }
 
+/// Writes what is odd about the scenario `name` to standard error.
+pub(super) fn warnings(name: &str, warnings: &[impl Display]) {
+    for warning in warnings {
+        message(&format!("warning: {name}: {warning}"));
+    }
+}
+
 /// Writes bytes to standard output as they are; they must not quote input.
 pub(super) fn raw(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();

@@ -61,6 +61,7 @@ pub(super) fn main(args: Args) -> CommandResult {
     let folder = args.out.unwrap_or_else(|| {
         PathBuf::from("runs").join(format!("{}-seed{}", scenario.name, args.seed))
     });
+    let warnings = scenario.warnings();
     let execution = &args.execution;
     let signals = SignalWatcher::start()?;
     let dashboard = execution.dashboard.unless(execution.headless)?;
@@ -69,7 +70,9 @@ pub(super) fn main(args: Args) -> CommandResult {
     } else {
         Vec::new()
     };
+    let name = scenario.name.clone();
     let run = start(scenario, args.seed, &folder, &execution.options(args.force))?;
+    output::warnings(&name, &warnings);
     if !kept.is_empty() {
         let folder = folder.display();
         output::message(&format!("note: kept in {folder}: {}", kept.join(", ")));

@@ -14,6 +14,7 @@
 mod common;
 
 mod anything;
+mod arenas;
 mod arguments;
 mod control_characters;
 mod damaged_logs;

@@ -7,9 +7,11 @@ use rand::RngExt;
 mod arena;
 mod catalogue;
 pub mod defaults;
+mod free_space;
 mod motion;
 mod probes;
 mod rays;
+mod reach;
 mod rules;
 mod scene;
 mod sensors;
@@ -28,6 +30,7 @@ pub use settings::{
 
 use arena::Reach;
 use motion::{Arc, slide};
+use reach::{Body, Survey};
 use sensors::{Sensors, Sighting};
 
 use super::{Catalogue, Probe, Settings, StateType, SubtaskId, TrainingSettings, World};
@@ -156,6 +159,17 @@ impl ForagingWorld {
     #[must_use]
     pub fn robot_radius_mm(&self) -> f64 {
         self.radius
+    }
+
+    /// Surveys what the robot can reach.
+    fn survey(&self) -> Result<Survey<'_>, Problem> {
+        let vision = self.sensors.vision_range;
+        let body = Body {
+            radius: self.radius,
+            capture: self.capture_distance.min(vision),
+            delivery: self.delivery_distance.min(vision),
+        };
+        Survey::new(&self.arena, body)
     }
 
     fn find_pose(&self, rng: &mut Stream) -> Option<Pose> {
@@ -314,7 +328,19 @@ impl Settings for ForagingSettings {
     }
 
     fn build(&self) -> Result<ForagingWorld, Problem> {
-        ForagingWorld::new(self)
+        let world = ForagingWorld::new(self)?;
+        let refusal = world.survey().ok().and_then(|survey| survey.refusal());
+        refusal.map_or(Ok(world), Err)
+    }
+
+    fn warnings(&self) -> Vec<Problem> {
+        let Ok(world) = ForagingWorld::new(self) else {
+            return Vec::new();
+        };
+        match world.survey() {
+            Ok(survey) => survey.warnings(),
+            Err(unchecked) => vec![unchecked],
+        }
     }
 
     fn trains_primitives(&self) -> bool {
