@@ -26,7 +26,7 @@ impl Abilities {
         let mut parts = name.split('-');
         Self {
             braille: parts.next() != Some("linux"),
-            colour: !name.split('-').any(|part| is_mono(part)),
+            colour: !name.split('-').any(is_mono),
         }
     }
 }
