@@ -82,7 +82,7 @@ impl Occupied {
     fn and_what_to_do(&self, path: &str) -> String {
         match self {
             Self::Same => format!(
-                "and holds this run; allowed: 'maxq-lab resume {path}' to go on with it, --force \
+                "and holds this run; allowed: 'maxq-lab resume {path}' to resume it, --force \
                  to replace it, or another --out"
             ),
             Self::Another(differences) => format!(
