@@ -85,21 +85,24 @@ impl Report {
         let result = if Plan::is_plan(file) {
             checked_plan(file, settings).map(|plan| report.plan = Some(plan))
         } else {
-            checked_scenario(file, settings).map(|scenario| report.scenario = Some(scenario))
+            checked_scenario(file, settings).map(|(scenario, warnings)| {
+                report.scenario = Some(scenario);
+                report.warnings = warnings;
+            })
         };
-        let warnings = report.scenario.iter().flat_map(Scenario::warnings);
-        report.warnings = warnings.map(|warning| warning.to_string()).collect();
         report.valid = result.is_ok();
         report.error = result.err();
         report
     }
 }
 
-fn checked_scenario(file: &str, settings: &[String]) -> Result<Scenario, String> {
+/// Reads a scenario, and says what is odd about it.
+fn checked_scenario(file: &str, settings: &[String]) -> Result<(Scenario, Vec<String>), String> {
     let scenario = Scenario::load(file).and_then(|scenario| scenario.with_settings(settings));
     let scenario = scenario.map_err(|error| error.to_string())?;
-    experiment(scenario.clone(), 0).map_err(|error| format!("{file}: {error}"))?;
-    Ok(scenario)
+    let ready = experiment(scenario.clone(), 0).map_err(|error| format!("{file}: {error}"))?;
+    let warnings = ready.warnings().iter().map(ToString::to_string).collect();
+    Ok((scenario, warnings))
 }
 
 fn checked_plan(file: &str, settings: &[String]) -> Result<Plan, String> {

@@ -61,7 +61,6 @@ pub(super) fn main(args: Args) -> CommandResult {
     let folder = args.out.unwrap_or_else(|| {
         PathBuf::from("runs").join(format!("{}-seed{}", scenario.name, args.seed))
     });
-    let warnings = scenario.warnings();
     let execution = &args.execution;
     let signals = SignalWatcher::start()?;
     let dashboard = execution.dashboard.unless(execution.headless)?;
@@ -70,9 +69,8 @@ pub(super) fn main(args: Args) -> CommandResult {
     } else {
         Vec::new()
     };
-    let name = scenario.name.clone();
     let run = start(scenario, args.seed, &folder, &execution.options(args.force))?;
-    output::warnings(&name, &warnings);
+    output::warnings(&run.scenario.name, &run.warnings);
     if !kept.is_empty() {
         let folder = folder.display();
         output::message(&format!("note: kept in {folder}: {}", kept.join(", ")));

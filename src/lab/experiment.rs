@@ -3,6 +3,7 @@
 use crate::evolution::{EvolutionState, TreeError, Workers, read_tree};
 use crate::hierarchy::Tree;
 use crate::learning::{Encoder, Gate, PrimitiveSet, SelectionProbabilities, Stopped};
+use crate::rules::Problem;
 use crate::scenario::Scenario;
 use crate::worlds::scene::Scenery;
 use crate::worlds::{Catalogue, Probe, SubtaskId};
@@ -32,6 +33,9 @@ use super::work::Work;
 pub trait AnyExperiment: Send + Sync {
     /// Returns the scenario.
     fn scenario(&self) -> &Scenario;
+
+    /// Returns what is odd about the scenario, though it can be carried out.
+    fn warnings(&self) -> Vec<Problem>;
 
     /// Returns the seed of all random streams.
     fn seed(&self) -> u64;

@@ -19,6 +19,7 @@ use super::work::Work;
 use super::world_experiment::experiment;
 use crate::evolution::{Workers, processors};
 use crate::files::FileError;
+use crate::rules::Problem;
 use crate::scenario::{PrimitiveLearning, Scenario};
 
 /// How a run is computed and recorded. No option changes its result.
@@ -41,6 +42,8 @@ pub struct Run {
     pub controls: Controls,
     /// Its scenario.
     pub scenario: Scenario,
+    /// What is odd about the scenario.
+    pub warnings: Vec<Problem>,
     /// Its seed.
     pub seed: u64,
     /// Its folder.
@@ -217,6 +220,7 @@ fn begin(preparation: Preparation) -> Result<Run, RunError> {
         checkpoint,
     } = preparation;
     let experiment = experiment(scenario.clone(), seed)?;
+    let warnings = experiment.warnings();
     let (controls, events) = Controls::new();
     let (folder, manifest) = place.folder()?;
     let path = folder.path().to_owned();
@@ -259,6 +263,7 @@ fn begin(preparation: Preparation) -> Result<Run, RunError> {
         events,
         controls,
         scenario,
+        warnings,
         seed,
         folder: path,
         thread,

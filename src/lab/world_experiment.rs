@@ -20,6 +20,7 @@ use crate::learning::{
     Encoder, Gate, Policy, PolicySamples, PrimitiveSet, SelectionProbabilities, Stopped,
 };
 use crate::random::{Purpose, stream};
+use crate::rules::Problem;
 use crate::scenario::Scenario;
 use crate::worlds::scene::{Scenery, Scenic};
 use crate::worlds::{Catalogue, Probe, SubtaskId, WorldFn};
@@ -114,6 +115,14 @@ impl<W: Scenic + 'static> WorldExperiment<W> {
 impl<W: Scenic + 'static> AnyExperiment for WorldExperiment<W> {
     fn scenario(&self) -> &Scenario {
         &self.experiment.scenario
+    }
+
+    fn warnings(&self) -> Vec<Problem> {
+        let name = self.scenario().world.name();
+        let warnings = self.experiment.world.warnings().iter().cloned();
+        warnings
+            .map(|warning| warning.within(name).within("world"))
+            .collect()
     }
 
     fn seed(&self) -> u64 {

@@ -138,14 +138,6 @@ impl Scenario {
         }
     }
 
-    /// Returns what is odd about this scenario, though it obeys every rule and its world can be
-    /// built.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<Problem> {
-        let warnings = self.world.warnings().into_iter();
-        warnings.map(|warning| warning.within("world")).collect()
-    }
-
     /// Returns the JSON Schema of scenario files.
     #[must_use]
     pub fn schema() -> schemars::Schema {

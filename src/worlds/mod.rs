@@ -65,6 +65,12 @@ pub trait World: Send + Sync {
     /// Returns the subtasks that hierarchies are made of.
     fn catalogue(&self) -> &Catalogue;
 
+    /// What is odd about the world, though a task can be done in it. The places are below the
+    /// settings of the world.
+    fn warnings(&self) -> &[Problem] {
+        &[]
+    }
+
     /// Draws the start of a trial.
     fn draw_start(&self, rng: &mut Stream) -> Self::Start;
 

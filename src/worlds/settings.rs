@@ -20,12 +20,6 @@ pub trait Settings {
     /// Fails if they describe no world nevertheless. The problem's place is below the settings.
     fn build(&self) -> Result<Self::World, Problem>;
 
-    /// Returns what is odd about the settings, though they obey every rule and make a world. The
-    /// places are below the settings.
-    fn warnings(&self) -> Vec<Problem> {
-        Vec::new()
-    }
-
     /// Returns whether primitive subtasks are trained before evolution starts
     /// ([`World::training`](super::World::training)). If not, each individual learns them.
     fn trains_primitives(&self) -> bool {
@@ -67,16 +61,6 @@ macro_rules! worlds {
                 match self {
                     $(Self::$name(model) => check.within($folder, |c| model.check(c)),)+
                 }
-            }
-
-            /// Returns what is odd about settings that make a world; the places are below `world`.
-            #[must_use]
-            pub fn warnings(&self) -> Vec<Problem> {
-                let warnings = match self {
-                    $(Self::$name(model) => model.warnings(),)+
-                };
-                let name = self.name();
-                warnings.into_iter().map(|warning| warning.within(name)).collect()
             }
 
             /// Whether primitive subtasks are trained before evolution starts.

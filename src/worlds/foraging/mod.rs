@@ -108,6 +108,8 @@ pub struct ForagingWorld {
     primitives: [Primitive; 5],
     /// A free pose, for a crowded arena in which a search fails.
     some_pose: Pose,
+    /// What is odd about the arena.
+    warnings: Vec<Problem>,
 }
 
 impl ForagingWorld {
@@ -139,6 +141,7 @@ impl ForagingWorld {
                 position: Point2::origin(),
                 heading: Vector2::x(),
             },
+            warnings: Vec::new(),
         };
         let mut rng = stream(0, 0, 0, Purpose::StartPoses);
         world.some_pose = world.find_pose(&mut rng).ok_or_else(|| {
@@ -328,19 +331,15 @@ impl Settings for ForagingSettings {
     }
 
     fn build(&self) -> Result<ForagingWorld, Problem> {
-        let world = ForagingWorld::new(self)?;
-        let refusal = world.survey().ok().and_then(|survey| survey.refusal());
-        refusal.map_or(Ok(world), Err)
-    }
-
-    fn warnings(&self) -> Vec<Problem> {
-        let Ok(world) = ForagingWorld::new(self) else {
-            return Vec::new();
-        };
-        match world.survey() {
-            Ok(survey) => survey.warnings(),
+        let mut world = ForagingWorld::new(self)?;
+        world.warnings = match world.survey() {
+            Ok(survey) => match survey.refusal() {
+                Some(refusal) => return Err(refusal),
+                None => survey.warnings(),
+            },
             Err(unchecked) => vec![unchecked],
-        }
+        };
+        Ok(world)
     }
 
     fn trains_primitives(&self) -> bool {
@@ -355,6 +354,10 @@ impl World for ForagingWorld {
 
     fn catalogue(&self) -> &Catalogue {
         &self.catalogue
+    }
+
+    fn warnings(&self) -> &[Problem] {
+        &self.warnings
     }
 
     fn draw_start(&self, rng: &mut Stream) -> Pose {
