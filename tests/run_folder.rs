@@ -324,9 +324,11 @@ fn a_symbolic_link_is_no_place_for_a_new_run() {
     run_in(&folder, &short(&[]), 5, &threads(2));
     let before = Record::of(&folder);
     std::os::unix::fs::symlink(&folder, &link).unwrap();
-    for force in [&["--force"][..], &[]] {
-        let said = refused(run(&link).args(force));
-        assert!(said.contains("link: found a symbolic link"), "{said}");
+    for path in [link.clone(), link.join("")] {
+        for force in [&["--force"][..], &[]] {
+            let said = refused(run(&path).args(force));
+            assert!(said.contains("found a symbolic link"), "{said}");
+        }
     }
     Record::of(&folder).assert_same(&before, "after the refusals");
 }

@@ -167,7 +167,8 @@ impl RunFolder {
     /// Replaces the run in an existing folder; returns `None` if the folder does not exist or is
     /// empty. Files that are not the run's own stay.
     fn replace(path: &Path, manifest: &Manifest, force: bool) -> Result<Option<Self>, FolderError> {
-        if path.is_symlink() {
+        // With a slash at its end, the path of a link would be that of the folder it leads to.
+        if path.components().as_path().is_symlink() {
             return Err(FolderError::Link {
                 path: path.display().to_string(),
             });
