@@ -201,8 +201,8 @@ impl Follower {
         }
         self.checkpoint = stamp;
         let bytes = read_bytes(&self.folder.join(CHECKPOINT), MAX_CHECKPOINT_BYTES);
-        // A follower does not need the checkpoint, so a damaged one is no trouble; resuming
-        // reports it.
+        // The process replaces the checkpoint again and again. One that cannot be read here is no
+        // trouble: `check_log` reports a damaged one when the run is first seen, and so does resuming.
         let file = bytes
             .ok()
             .and_then(|bytes| serde_json::from_slice(&bytes).ok());
