@@ -15,7 +15,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, after};
-use crossterm::event::Event as Typed;
+use ratatui::crossterm::event::Event as Typed;
 
 pub use runs::{RunsExit, RunsSession};
 pub use source::{Live, Source};

@@ -3,7 +3,7 @@
 use std::io;
 
 use crossbeam_channel::{Receiver, after, never};
-use crossterm::event::Event as Typed;
+use ratatui::crossterm::event::Event as Typed;
 
 use super::wait::{WakeUp, wait};
 use super::{BACKGROUND, Exit, input};

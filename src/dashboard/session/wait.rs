@@ -4,7 +4,7 @@ use std::io;
 use std::time::Instant;
 
 use crossbeam_channel::{Receiver, select};
-use crossterm::event::Event as Typed;
+use ratatui::crossterm::event::Event as Typed;
 use signal_hook::consts::SIGHUP;
 
 use crate::dashboard::terminal::{Job, Terminal};

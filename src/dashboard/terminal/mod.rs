@@ -22,8 +22,8 @@ use std::panic;
 use std::sync::{Arc, Once};
 
 use crossbeam_channel::Receiver;
-use crossterm::event::Event;
 use ratatui::Frame;
+use ratatui::crossterm::event::Event;
 use ratatui::layout::Size;
 use rustix::process::{Signal, kill_current_process_group};
 

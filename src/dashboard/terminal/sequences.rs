@@ -1,7 +1,7 @@
 //! The meaning of complete escape sequences: keys, mouse events, or replies that mean nothing
 //! to the dashboard.
 
-use crossterm::event::{
+use ratatui::crossterm::event::{
     Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers, MouseButton, MouseEvent, MouseEventKind,
 };
 
