@@ -175,7 +175,7 @@ pub const WRITING: &str = ".writing-";
 /// Fails if the operating system refuses.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let temporary = written(path, bytes)?;
-    temporary.as_file().sync_all()?;
+    synced(temporary.as_file().sync_all())?;
     temporary.persist(path).map_err(|error| error.error)?;
     sync_folder(folder_of(path))
 }
@@ -200,14 +200,14 @@ pub fn write_in_one_step(path: &Path, bytes: &[u8]) -> io::Result<()> {
 pub fn link_atomically(from: &Path, path: &Path) -> io::Result<()> {
     let folder = folder_of(path);
     let file = File::open(from)?;
-    file.sync_all()?;
+    synced(file.sync_all())?;
     let place = tempfile::Builder::new()
         .prefix(WRITING)
         .tempdir_in(folder)?;
     let linked = place.path().join("linked");
     if fs::hard_link(from, &linked).is_err() {
         fs::copy(from, &linked)?;
-        File::open(&linked)?.sync_all()?;
+        synced(File::open(&linked)?.sync_all())?;
     }
     fs::rename(&linked, path)?;
     sync_folder(folder)
@@ -272,7 +272,27 @@ pub fn without_path(error: io::Error) -> io::Error {
 /// # Errors
 /// Fails if the operating system refuses.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
-    fs::File::open(folder)?.sync_all()
+    synced(File::open(folder)?.sync_all())
+}
+
+/// Returns the result of a sync; a file system that cannot sync such a file is no failure.
+///
+/// # Errors
+/// When the sync failed for another reason.
+pub fn synced(result: io::Result<()>) -> io::Result<()> {
+    match result {
+        Err(error) if is_unsupported(&error) => Ok(()),
+        result => result,
+    }
+}
+
+/// Returns whether `error` says that the file system, or the operating system, cannot do this at
+/// all.
+#[must_use]
+pub fn is_unsupported(error: &io::Error) -> bool {
+    use rustix::io::Errno;
+    let unsupported = [Errno::NOSYS, Errno::INVAL, Errno::NOTSUP, Errno::OPNOTSUPP];
+    Errno::from_io_error(error).is_some_and(|errno| unsupported.contains(&errno))
 }
 
 /// Returns the folder of `path`.
@@ -324,7 +344,17 @@ pub fn visible(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::parse_json;
+    use super::{parse_json, synced};
+
+    #[test]
+    fn a_file_system_that_cannot_sync_is_no_failure() {
+        use rustix::io::Errno;
+        for unsupported in [Errno::INVAL, Errno::NOTSUP, Errno::NOSYS] {
+            assert!(synced(Err(unsupported.into())).is_ok());
+        }
+        assert!(synced(Err(Errno::IO.into())).is_err());
+        assert!(synced(Err(Errno::NOSPC.into())).is_err());
+    }
 
     #[test]
     fn json_errors_say_once_where_they_are() {

@@ -61,7 +61,9 @@ pub(super) fn main(args: &Args) -> CommandResult {
                 match &report.error {
                     None => {
                         output::text(&format!("{}: valid\n", report.file))?;
-                        output::warnings(&report.file, &report.warnings);
+                        let file = &report.file;
+                        let placed = report.warnings.iter().map(|odd| format!("{file}: {odd}"));
+                        output::warnings(&placed.collect::<Vec<_>>());
                     }
                     Some(error) => output::message(&format!("error: {error}")),
                 }

@@ -73,10 +73,10 @@ pub(super) fn message(text: &str) {
     let _ = writeln!(io::stderr(), "{}", visible(text));
 }
 
-/// Writes what is odd about the scenario `name` to standard error.
-pub(super) fn warnings(name: &str, warnings: &[impl Display]) {
+/// Writes what is odd to standard error; each warning begins with its place.
+pub(super) fn warnings(warnings: &[impl Display]) {
     for warning in warnings {
-        message(&format!("warning: {name}: {warning}"));
+        message(&format!("warning: {warning}"));
     }
 }
 

@@ -70,7 +70,7 @@ pub(super) fn main(args: Args) -> CommandResult {
         Vec::new()
     };
     let run = start(scenario, args.seed, &folder, &execution.options(args.force))?;
-    output::warnings(&run.scenario.name, &run.warnings);
+    output::warnings(&run.warnings);
     if !kept.is_empty() {
         let folder = folder.display();
         output::message(&format!("note: kept in {folder}: {}", kept.join(", ")));
@@ -115,5 +115,6 @@ pub(super) fn resume_main(args: &ResumeArgs) -> CommandResult {
     let execution = &args.execution;
     let dashboard = execution.dashboard.unless(execution.headless)?;
     let run = resume(&args.run_dir, args.generations, &execution.options(false))?;
+    output::warnings(&run.warnings);
     live::follow(run, dashboard, signals, execution)
 }

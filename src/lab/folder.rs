@@ -1,15 +1,15 @@
 //! The run folder: its files, its lock, and how it is created.
 
-use std::fmt;
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 use std::time::Duration;
 
+use serde::Serialize;
 use tempfile::TempDir;
 
 use super::folder_error::{FolderError, Occupied};
+use super::lock::{LOCK, OWNER, RunLock};
 use super::manifest::{MANIFEST_FORMAT, Manifest};
 use super::pulse::PULSE_FILE;
 use crate::files::{
@@ -29,8 +29,6 @@ pub const SUMMARY: &str = "summary.json";
 
 /// Name of the file with the evaluation of the winner, which studies write.
 pub const EVALUATION: &str = "evaluation.json";
-/// Name of the file that the process working on a run keeps locked.
-const LOCK: &str = "lock";
 /// Name of the folder of kept checkpoints.
 const GENERATIONS: &str = "generations";
 
@@ -51,74 +49,11 @@ const NEW_RUN: &str = ".new-run-";
 /// so an older one was left by a process that died.
 const ABANDONED: Duration = Duration::from_secs(3600);
 
-/// Which generations' checkpoints are kept, so that past generations can be inspected.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Keep {
-    /// Those of all generations.
-    #[default]
-    All,
-    /// Those of every n-th generation.
-    Every(u64),
-    /// Only the latest, `checkpoint.json`.
-    None,
-}
-
-impl Keep {
-    /// Returns whether the checkpoint of a generation is kept.
-    #[must_use]
-    pub fn keeps(self, generation: u64) -> bool {
-        match self {
-            Self::All => true,
-            Self::Every(n) => generation.is_multiple_of(n),
-            Self::None => false,
-        }
-    }
-}
-
-impl fmt::Display for Keep {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::All => f.write_str("all"),
-            Self::Every(n) => write!(f, "{n}"),
-            Self::None => f.write_str("none"),
-        }
-    }
-}
-
-impl FromStr for Keep {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match (text, text.parse()) {
-            ("all", _) => Ok(Self::All),
-            ("none", _) => Ok(Self::None),
-            (_, Ok(n)) if n > 0 => Ok(Self::Every(n)),
-            _ => Err(format!(
-                "found {text:?}; allowed: all, none, or a number n for every n-th"
-            )),
-        }
-    }
-}
-
 /// A run folder whose lock this process holds, so that it may write to it.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
-    _lock: Lock,
-}
-
-/// The lock of a run folder.
-///
-/// It is released explicitly: a child process that another thread starts at this moment inherits
-/// the open file, and closing it here alone would not release the lock.
-#[derive(Debug)]
-struct Lock(File);
-
-impl Drop for Lock {
-    fn drop(&mut self) {
-        // If this fails, closing the file releases the lock.
-        let _ = self.0.unlock();
-    }
+    lock: RunLock,
 }
 
 impl RunFolder {
@@ -142,13 +77,11 @@ impl RunFolder {
             return Ok(replaced);
         }
         let fresh = temporary(parent)?;
-        let folder = Self {
-            path: fresh.path().to_owned(),
-            _lock: lock(fresh.path())?,
-        };
-        folder.write_manifest(manifest)?;
-        let generations = folder.generations();
-        fs::create_dir(&generations).map_err(|error| io_error(&generations, error))?;
+        // Nobody knows the folder by its temporary name: errors name the one that was asked for.
+        let in_new = |error: io::Error| io_error(path, error);
+        let mut lock = RunLock::take(fresh.path(), path)?;
+        write_pretty(&fresh.path().join(MANIFEST), manifest).map_err(in_new)?;
+        fs::create_dir(fresh.path().join(GENERATIONS)).map_err(in_new)?;
         fs::rename(fresh.path(), path).map_err(|error| match error.kind() {
             io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::NotADirectory => {
                 occupied(path, manifest)
@@ -157,10 +90,11 @@ impl RunFolder {
         })?;
         // The folder has been renamed, so there is nothing to delete under the temporary name.
         let _moved = fresh.keep();
+        lock.moved_to(path);
         sync_folder(parent).map_err(|error| io_error(parent, error))?;
         Ok(Self {
             path: path.to_owned(),
-            ..folder
+            lock,
         })
     }
 
@@ -211,7 +145,7 @@ impl RunFolder {
     pub fn foreign_files(path: &Path) -> Vec<String> {
         let entries = fs::read_dir(path).into_iter().flatten().flatten();
         let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-        let own = |name: &str| name == MANIFEST || name == LOCK || OWN.contains(&name);
+        let own = |name: &str| [MANIFEST, LOCK, OWNER].contains(&name) || OWN.contains(&name);
         let mut foreign: Vec<_> = names
             .filter(|name| !own(name) && !name.starts_with(WRITING))
             .collect();
@@ -231,7 +165,7 @@ impl RunFolder {
         }
         let folder = Self {
             path: path.to_owned(),
-            _lock: lock(path)?,
+            lock: RunLock::take(path, path)?,
         };
         for place in [folder.path.clone(), folder.generations()] {
             clean(&place, WRITING, Duration::ZERO).map_err(|error| io_error(&place, error))?;
@@ -243,6 +177,20 @@ impl RunFolder {
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Returns how the folder is guarded where the file system cannot lock files, as a warning.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        self.lock.warning()
+    }
+
+    /// Checks that no other process has taken this one for dead and works on the run now.
+    ///
+    /// # Errors
+    /// When one has.
+    pub(super) fn check_ours(&self) -> io::Result<()> {
+        self.lock.check_ours()
     }
 
     /// Returns the path of `run.json`.
@@ -287,10 +235,7 @@ impl RunFolder {
     /// When the operating system refuses.
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), FolderError> {
         let path = self.manifest();
-        let written = serde_json::to_vec_pretty(manifest)
-            .map_err(io::Error::from)
-            .and_then(|bytes| write_atomically(&path, &bytes));
-        written.map_err(|error| io_error(&path, error))
+        write_pretty(&path, manifest).map_err(|error| io_error(&path, error))
     }
 
     /// Reads the `run.json` of a run folder.
@@ -318,6 +263,11 @@ impl RunFolder {
             .map_err(|error| wrong(error.to_string()))?;
         Ok(manifest)
     }
+}
+
+/// Replaces the file at `path` by a value as JSON that is easy to read.
+fn write_pretty(path: &Path, value: &impl Serialize) -> io::Result<()> {
+    write_atomically(path, &serde_json::to_vec_pretty(value)?)
 }
 
 /// Removes the kept checkpoints of a run, and their folder if nothing else is in it.
@@ -354,7 +304,8 @@ pub fn is_record(path: &Path) -> bool {
         return false;
     };
     let of_run = |folder: &Path| folder.join(MANIFEST).is_file();
-    let own = name == MANIFEST || name == LOCK || OWN.iter().any(|&own| name == own);
+    let always = [MANIFEST, LOCK, OWNER];
+    let own = always.iter().chain(&OWN).any(|&own| name == own);
     let is_kept = parent.ends_with(GENERATIONS) && is_kept_checkpoint(Path::new(name));
     (own && of_run(&parent)) || (is_kept && parent.parent().is_some_and(of_run))
 }
@@ -367,23 +318,6 @@ fn temporary(parent: &Path) -> Result<TempDir, FolderError> {
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
     let made = builder.tempdir_in(parent);
     made.map_err(|error| io_error(parent, without_path(error)))
-}
-
-fn lock(folder: &Path) -> Result<Lock, FolderError> {
-    let path = folder.join(LOCK);
-    let file = OpenOptions::new()
-        .create(true)
-        .truncate(false)
-        .write(true)
-        .open(&path)
-        .map_err(|error| io_error(&path, error))?;
-    match file.try_lock() {
-        Ok(()) => Ok(Lock(file)),
-        Err(TryLockError::WouldBlock) => Err(FolderError::InUse {
-            path: folder.display().to_string(),
-        }),
-        Err(TryLockError::Error(error)) => Err(io_error(&path, error)),
-    }
 }
 
 /// Returns the error for an existing `path` where the run of `wanted` was to be created.

@@ -11,8 +11,9 @@ use super::checkpoint::MAX_CHECKPOINT_BYTES;
 use super::event::Event;
 use super::folder::{CHECKPOINT, EVENTS, MANIFEST, RunFolder};
 use super::integrity::{EventOrder, check_log};
+use super::lock::is_dead;
 use super::log::{LogError, read_event};
-use super::manifest::{Manifest, host_name};
+use super::manifest::Manifest;
 use super::news::{Liveness, News, Recording};
 use super::pulse::{BEAT, Beat, PULSE_FILE};
 use super::run_error::RunError;
@@ -228,13 +229,13 @@ impl Follower {
         };
         match &mut self.beat {
             Some((beat, since)) if *beat == found => {
-                if is_dead(&found) || now.duration_since(*since) >= SILENCE {
+                if is_dead(&found.host, found.process) || now.duration_since(*since) >= SILENCE {
                     self.set_liveness(Liveness::Silent, news);
                 }
             }
             known => {
                 let before = known.replace((found.clone(), now)).map(|(beat, _)| beat);
-                let dead = is_dead(&found);
+                let dead = is_dead(&found.host, found.process);
                 compare_beats(before.as_ref(), found, news);
                 self.set_liveness(
                     if dead {
@@ -304,18 +305,6 @@ fn compare_beats(before: Option<&Beat>, beat: Beat, news: &mut Vec<News>) {
     }
     let progress = beat.progress.filter(Event::is_progress);
     news.extend(progress.map(News::Event));
-}
-
-/// Returns whether the process is known to be dead: it ran on this machine and does not exist.
-fn is_dead(beat: &Beat) -> bool {
-    if beat.host == host_name() {
-        use rustix::io::Errno;
-        use rustix::process::{Pid, test_kill_process};
-        let process = i32::try_from(beat.process).ok().and_then(Pid::from_raw);
-        return process
-            .is_some_and(|process| test_kill_process(process).err() == Some(Errno::SRCH));
-    }
-    false
 }
 
 impl Recording {

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::checkpoint::LogPosition;
 use super::event::{EVENT_FORMAT, Event};
-use crate::files::{FileError, FileProblem};
+use crate::files::{FileError, FileProblem, synced};
 
 /// Longest line that is read, in bytes. A generation of the largest allowed population fits.
 const MAX_LINE_BYTES: u64 = 1 << 26;
@@ -98,7 +98,7 @@ impl Log {
 
     /// Waits until the appended events are on the disk.
     pub(super) fn sync(&self) -> io::Result<()> {
-        self.file.sync_data()
+        synced(self.file.sync_data())
     }
 
     pub(super) fn position(&self) -> LogPosition {

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use super::controls::{Activity, Controls};
 use super::event::Event;
 use super::manifest::host_name;
+use crate::files::WRITING;
 
 /// Name of the file in the run folder.
 pub(super) const PULSE_FILE: &str = "pulse.json";
@@ -77,6 +78,7 @@ impl Drop for Pulse {
             // A panicked thread has stopped too.
             let _ = thread.join();
         }
+        let _ = fs::remove_file(fresh(&self.path));
         let _ = fs::remove_file(&self.path);
     }
 }
@@ -101,7 +103,12 @@ fn beat(number: u64, controls: &Controls) -> Beat {
 /// Replaces the file in one step, so that nobody reads half of it. It is not synced: after a crash
 /// of the machine it is worthless.
 fn write(path: &Path, beat: &Beat) -> io::Result<()> {
-    let fresh = path.with_extension("json.new");
+    let fresh = fresh(path);
     fs::write(&fresh, serde_json::to_vec(beat)?)?;
     fs::rename(&fresh, path)
+}
+
+/// Returns the path under which the next beat is written.
+fn fresh(path: &Path) -> PathBuf {
+    path.with_file_name(format!("{WRITING}pulse"))
 }

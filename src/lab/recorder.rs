@@ -16,7 +16,8 @@ use super::checkpoint::{Checkpoint, LogPosition, check_finite};
 use super::checkpoint_error::CheckpointError;
 use super::controls::Controls;
 use super::event::Event;
-use super::folder::{Keep, RunFolder};
+use super::folder::RunFolder;
+use super::keep::Keep;
 use super::log::Log;
 use crate::evolution::{EvolutionState, GenerationRecord};
 use crate::files::{FileProblem, link_atomically, write_atomically, write_in_one_step};
@@ -116,6 +117,7 @@ impl Recorder<'_> {
     ///
     /// A generation in which learning diverged is not recorded: JSON cannot express its numbers.
     fn record(&mut self, message: Message) -> Result<Option<Pending>, RecordError> {
+        self.folder.check_ours()?;
         let state = match message {
             Message::Event(event) => {
                 self.log.append(&event)?;

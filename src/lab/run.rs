@@ -9,8 +9,9 @@ use crossbeam_channel::Receiver;
 use super::checkpoint::Checkpoint;
 use super::controls::Controls;
 use super::event::Event;
-use super::folder::{Keep, RunFolder};
+use super::folder::RunFolder;
 use super::folder_error::FolderError;
+use super::keep::Keep;
 use super::log::{Log, read_events};
 use super::manifest::{Invocation, MANIFEST_FORMAT, Manifest};
 use super::outcome::Outcome;
@@ -19,7 +20,6 @@ use super::work::Work;
 use super::world_experiment::experiment;
 use crate::evolution::{Workers, processors};
 use crate::files::FileError;
-use crate::rules::Problem;
 use crate::scenario::{PrimitiveLearning, Scenario};
 
 /// How a run is computed and recorded. No option changes its result.
@@ -42,8 +42,8 @@ pub struct Run {
     pub controls: Controls,
     /// Its scenario.
     pub scenario: Scenario,
-    /// What is odd about the scenario.
-    pub warnings: Vec<Problem>,
+    /// What is odd about the scenario or the folder, each with its place.
+    pub warnings: Vec<String>,
     /// Its seed.
     pub seed: u64,
     /// Its folder.
@@ -220,10 +220,13 @@ fn begin(preparation: Preparation) -> Result<Run, RunError> {
         checkpoint,
     } = preparation;
     let experiment = experiment(scenario.clone(), seed)?;
-    let warnings = experiment.warnings();
+    let odd = experiment.warnings().into_iter();
+    let mut warnings: Vec<_> = odd.map(|odd| format!("{}: {odd}", scenario.name)).collect();
     let (controls, events) = Controls::new();
     let (folder, manifest) = place.folder()?;
     let path = folder.path().to_owned();
+    let of_folder = folder.warning();
+    warnings.extend(of_folder.map(|odd| format!("{}: {odd}", path.display())));
     let state = checkpoint
         .as_ref()
         .map(|checkpoint| experiment.population(checkpoint));

@@ -8,7 +8,8 @@ use crossbeam_channel::{Sender, bounded};
 
 use super::controls::Controls;
 use super::event::{EVENT_FORMAT, Ending, Event};
-use super::folder::{Keep, RunFolder};
+use super::folder::RunFolder;
+use super::keep::Keep;
 use super::log::Log;
 use super::outcome::{BestIndividual, Outcome};
 use super::pulse::Pulse;
