@@ -25,8 +25,8 @@
 //!
 //! # Rooms
 //!
-//! Each room imports only from rooms below it in this table; [`random`], [`files`] and
-//! [`rules`] serve all.
+//! Each room imports only from rooms below it in this table; [`random`], [`files`], [`rules`] and
+//! [`words`] serve all.
 //!
 //! | room | contents |
 //! | --- | --- |
@@ -92,4 +92,5 @@ pub mod random;
 pub mod report;
 pub mod rules;
 pub mod scenario;
+pub mod words;
 pub mod worlds;

@@ -3,6 +3,8 @@
 use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 
+use crate::words::{quoted, shortened};
+
 /// A broken rule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
@@ -86,7 +88,7 @@ impl Check {
     ) {
         let holds = allowed.contains(&found);
         let words = format!("{} to {}", allowed.start(), allowed.end());
-        self.rule(holds, part, found, words);
+        self.rule(holds, part, shortened(&found.to_string()), words);
     }
 
     /// Checks numbers, each given as its place, its value and its allowed range.
@@ -98,7 +100,7 @@ impl Check {
 
     /// Checks that `name` can name a folder: see [`is_name`].
     pub fn name(&mut self, part: &str, name: &str) {
-        self.rule(is_name(name), part, format!("{name:?}"), NAMES);
+        self.rule(is_name(name), part, quoted(name), NAMES);
     }
 
     /// Checks that a reward is finite and so small that sums of rewards keep their precision.

@@ -20,7 +20,7 @@ use std::process::Command;
 use maxq_lab::scenario::{EMBEDDED, EMBEDDED_PLANS, Embedded};
 
 /// The rooms with their ranks. A room may import from itself and from rooms of higher ranks.
-/// Every room may use the tools `files`, `random` and `rules`.
+/// Every room may use the tools `files`, `random`, `rules` and `words`.
 const ROOMS: &[(&str, usize)] = &[
     ("cli", 0),
     ("dashboard", 1),
@@ -34,6 +34,7 @@ const ROOMS: &[(&str, usize)] = &[
     ("files", 8),
     ("random", 8),
     ("rules", 8),
+    ("words", 9),
 ];
 
 /// Files that belong to no room: they list the rooms.

@@ -247,7 +247,9 @@ fn an_existing_run_is_replaced_only_with_force() {
     let before = Record::of(&folder);
     let said = refused(&mut run(&folder));
     for part in [
-        "exists already and holds another run, with seed 5 in the place of 1",
+        "exists already and holds another run: seed is 5 there, 1 here; ",
+        "evolution.generation_limit is 2 there, ",
+        "to keep both: maxq-lab run smoke",
         "allowed: another --out, or --force",
     ] {
         assert!(said.contains(part), "{said}");
@@ -260,7 +262,7 @@ fn an_existing_run_is_replaced_only_with_force() {
     Record::of(&folder).assert_same(&expected, "after --force");
     let said = refused(&mut run(&folder));
     assert!(said.contains("exists already and holds this run"), "{said}");
-    assert!(said.contains("'maxq-lab resume"), "{said}");
+    assert!(said.contains("to resume it: maxq-lab resume "), "{said}");
     // The old run had fewer generations; nothing of either is left beside the new one.
     assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 1);
 }
@@ -275,7 +277,10 @@ fn a_run_folder_given_as_a_scenario_is_refused_with_a_hint() {
         said.contains("found a run folder; allowed: a scenario file"),
         "{said}"
     );
-    assert!(said.contains("'maxq-lab resume "), "{said}");
+    assert!(
+        said.contains("to resume this run: maxq-lab resume "),
+        "{said}"
+    );
 }
 
 #[test]

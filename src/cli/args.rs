@@ -12,11 +12,13 @@ use crate::evolution::processors;
 use crate::lab::inspection::Start;
 use crate::lab::{AnyExperiment, Keep, MANIFEST, RunOptions};
 use crate::scenario::{EMBEDDED, Scenario};
+use crate::words::shell_word;
 
 /// A scenario and changes to its settings.
 #[derive(Clone, Debug, Args)]
 pub(super) struct ScenarioArgs {
-    /// Scenario file, or the name of a built-in scenario ('maxq-lab scenarios' lists them).
+    /// Scenario file, the name of a built-in scenario ('maxq-lab scenarios' lists them), or - for
+    /// standard input.
     scenario: String,
 
     /// Change a setting of the scenario; may be repeated.
@@ -34,10 +36,11 @@ impl ScenarioArgs {
         let name = &self.scenario;
         let is_embedded = EMBEDDED.iter().any(|embedded| embedded.name == name);
         if !is_embedded && Path::new(name).join(MANIFEST).is_file() {
+            let folder = shell_word(name);
             let message = format!(
                 "{name}: found a run folder; allowed: a scenario file, or the name of a built-in \
-                 scenario (to resume this run: 'maxq-lab resume {name}'; to view it: 'maxq-lab \
-                 replay {name}')"
+                 scenario; to resume this run: maxq-lab resume {folder}; to view it: maxq-lab \
+                 replay {folder}"
             );
             return Err(message.into());
         }

@@ -1,13 +1,16 @@
 //! `maxq-lab check`: validates scenario files and plans.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
 
 use super::output::{self, CommandResult, Format};
+use crate::files::read_standard_input;
 use crate::lab::experiment;
-use crate::report::Plan;
-use crate::scenario::Scenario;
+use crate::report::{PLAN_LIMITS, Plan};
+use crate::scenario::{STANDARD_INPUT, Scenario};
+use crate::words::quoted;
 
 /// Validate scenario files and study plans.
 ///
@@ -20,10 +23,11 @@ use crate::scenario::Scenario;
 #[command(after_help = "\
 Examples:
   maxq-lab check mine.json my-plan.json
+  jq '.learning.discount = 0.95' mine.json | maxq-lab check -
   maxq-lab check environment-1 --format json | jq '.[0].scenario'       all settings for --set
   maxq-lab check mine.json --set learning.discount=0.95")]
 pub(super) struct Args {
-    /// Scenario files, plan files, or names of built-in scenarios and plans.
+    /// Scenario files, plan files, or names of built-in scenarios and plans; - is standard input.
     #[arg(required = true)]
     files: Vec<String>,
 
@@ -84,36 +88,60 @@ impl Report {
             scenario: None,
             plan: None,
         };
-        let result = if Plan::is_plan(file) {
-            checked_plan(file, settings).map(|plan| report.plan = Some(plan))
-        } else {
-            checked_scenario(file, settings).map(|(scenario, warnings)| {
-                report.scenario = Some(scenario);
-                report.warnings = warnings;
-            })
-        };
-        report.valid = result.is_ok();
-        report.error = result.err();
+        report.error = report.check(settings).err();
+        report.valid = report.error.is_none();
         report
     }
-}
 
-/// Reads a scenario, and says what is odd about it.
-fn checked_scenario(file: &str, settings: &[String]) -> Result<(Scenario, Vec<String>), String> {
-    let scenario = Scenario::load(file).and_then(|scenario| scenario.with_settings(settings));
-    let scenario = scenario.map_err(|error| error.to_string())?;
-    let ready = experiment(scenario.clone(), 0).map_err(|error| format!("{file}: {error}"))?;
-    let warnings = ready.warnings().iter().map(ToString::to_string).collect();
-    Ok((scenario, warnings))
-}
-
-fn checked_plan(file: &str, settings: &[String]) -> Result<Plan, String> {
-    let plan = Plan::load(file).map_err(|error| error.to_string())?;
-    match settings.first() {
-        None => Ok(plan),
-        Some(found) => Err(format!(
-            "--set: found {found:?} with the plan {file}; allowed: with scenarios only (the \
-             settings of a plan stand in its arms)"
-        )),
+    /// Reads the file as what it is, and says what is wrong with it.
+    fn check(&mut self, settings: &[String]) -> Result<(), String> {
+        let file = self.file.as_str();
+        if file == STANDARD_INPUT {
+            let text = read_standard_input(PLAN_LIMITS.bytes).map_err(told)?;
+            self.file = String::from("standard input");
+            return self.check_text(&text, settings);
+        }
+        if Plan::is_plan(file) {
+            self.take_plan(Plan::load(file).map_err(told)?, settings)
+        } else {
+            self.take_scenario(Scenario::load(file).map_err(told)?, settings)
+        }
     }
+
+    fn check_text(&mut self, text: &str, settings: &[String]) -> Result<(), String> {
+        if Plan::is_text_of_plan(text) {
+            let plan = Plan::parse(text, &self.file, Path::new(""));
+            self.take_plan(plan.map_err(told)?, settings)
+        } else {
+            let scenario = Scenario::parse(text, &self.file);
+            self.take_scenario(scenario.map_err(told)?, settings)
+        }
+    }
+
+    /// Takes a scenario, and says what is odd about it.
+    fn take_scenario(&mut self, scenario: Scenario, settings: &[String]) -> Result<(), String> {
+        let scenario = scenario.with_settings(settings).map_err(told)?;
+        let ready = experiment(scenario.clone(), 0);
+        let ready = ready.map_err(|error| format!("{}: {error}", self.file))?;
+        self.warnings = ready.warnings().iter().map(ToString::to_string).collect();
+        self.scenario = Some(scenario);
+        Ok(())
+    }
+
+    fn take_plan(&mut self, plan: Plan, settings: &[String]) -> Result<(), String> {
+        if let Some(found) = settings.first() {
+            return Err(format!(
+                "--set: found {} with the plan {}; allowed: with scenarios only (the settings of a \
+                 plan stand in its arms)",
+                quoted(found),
+                self.file
+            ));
+        }
+        self.plan = Some(plan);
+        Ok(())
+    }
+}
+
+fn told(error: impl ToString) -> String {
+    error.to_string()
 }

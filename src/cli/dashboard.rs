@@ -17,6 +17,7 @@ use crate::dashboard::{App, Config, Mode, RunsTable, ViewContext};
 use crate::hierarchy::Glyphs;
 use crate::lab::AnyExperiment;
 use crate::lab::inspection::{Archive, Start};
+use crate::words::shell_path;
 
 /// Colours, characters and keys of the dashboard.
 #[derive(Clone, Debug, Args)]
@@ -126,7 +127,7 @@ impl DashboardArgs {
         &self,
         folder: &Path,
     ) -> Result<(DashboardSettings, SignalWatcher), Failure> {
-        self.require(&format!("maxq-lab frame {}", folder.display()))
+        self.require(&format!("maxq-lab frame {}", shell_path(folder)))
     }
 
     /// The settings, or `None` if the command runs `headless` or there is no terminal.

@@ -19,6 +19,7 @@ use crate::dashboard::terminal;
 use crate::hierarchy::{Glyphs, draw};
 use crate::lab::{Outcome, Run, lasting_experiment, overrides, summarise};
 use crate::scenario::{Scenario, Selection};
+use crate::words::shell_word;
 
 /// How long a terminal may take to accept the last messages after a signal.
 pub(super) const PATIENCE: Duration = Duration::from_secs(2);
@@ -67,7 +68,7 @@ pub(super) fn follow(
         return hand_over(&outcome, execution);
     }
     if outcome.stopped {
-        let folder = &outcome.run_dir;
+        let folder = shell_word(&outcome.run_dir);
         output::message(&format!("stopped; resume with: maxq-lab resume {folder}"));
     }
     if exit == Some(Exit::Panicked) {
@@ -147,6 +148,7 @@ fn hand_over(outcome: &Outcome, execution: &ExecutionArgs) -> CommandResult {
     command.process_group(0);
     let null = Stdio::null;
     let process = command.stdin(null()).stdout(null()).stderr(null()).spawn();
+    let folder = shell_word(folder);
     let process = process.map_err(|error| {
         format!(
             "cannot start a process for the run ({error}); resume with: maxq-lab resume {folder}"

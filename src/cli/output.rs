@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use clap::ValueEnum;
 use serde::Serialize;
 
-use crate::files::visible;
+use crate::words::visible;
 
 /// Why a command failed.
 #[derive(Debug)]

@@ -11,6 +11,7 @@ use super::output::{self, CommandResult, Failure, Format, counted};
 use crate::hierarchy::{Glyphs, Summary, Tree, draw, structural_difference, to_dot, to_text};
 use crate::lab::experiment;
 use crate::scenario::Scenario;
+use crate::words::quoted;
 use crate::worlds::Catalogue;
 
 /// The examples in the help of `maxq-lab tree`.
@@ -149,6 +150,6 @@ pub(super) fn with_tree<T>(
 ) -> Result<T, Failure> {
     let experiment = experiment(scenario.clone(), 0)?;
     let tree = experiment.read_tree(text);
-    let tree = tree.map_err(|error| format!("{text:?}: {error}"))?;
+    let tree = tree.map_err(|error| format!("{}: {error}", quoted(text)))?;
     Ok(what(&tree, experiment.catalogue()))
 }

@@ -11,6 +11,7 @@ use super::output::{self, CommandResult, Failure};
 use super::signals::SignalWatcher;
 use crate::dashboard::session::{Exit, Source};
 use crate::lab::{Liveness, Manifest, News, Recording, Watch, lasting_experiment};
+use crate::words::shell_path;
 
 /// Time between two reads of a run folder.
 pub(super) const INTERVAL: Duration = Duration::from_millis(250);
@@ -109,7 +110,7 @@ pub(super) fn replay(args: &ReplayArgs) -> CommandResult {
         &signals,
     )?;
     if is_live {
-        let folder = args.run_dir.display();
+        let folder = shell_path(&args.run_dir);
         output::message(&format!(
             "note: another process is working on this run; watch it with: maxq-lab watch {folder}"
         ));

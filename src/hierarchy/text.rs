@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::tree::Tree;
+use crate::words::quoted;
 use crate::worlds::Catalogue;
 
 /// The longest text that is read, in bytes.
@@ -58,7 +59,7 @@ pub fn parse(text: &str, catalogue: &Catalogue) -> Result<Tree, TextError> {
     for (at, token) in tokens(text) {
         let unexpected = |expected: String| TextError::Unexpected {
             at,
-            found: format!("{token:?}"),
+            found: quoted(token),
             expected,
         };
         let complete = depth == 0 && !preorder.is_empty();

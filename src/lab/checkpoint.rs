@@ -15,14 +15,17 @@ use serde_json::value::RawValue;
 use super::checkpoint_error::{CHECKPOINT_FORMAT, CheckpointError};
 use super::population_file::{IndividualFile, PrimitiveFile, primitives};
 use crate::evolution::EvolutionState;
-use crate::files::{parse_json, read_text};
+use crate::files::{Limits, parse_json, read_text};
 use crate::learning::{PrimitiveSet, PrimitiveValues};
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 
-/// Largest checkpoint that is read, in bytes. A large population of complete hierarchies takes a
-/// tenth of it.
-pub const MAX_CHECKPOINT_BYTES: u64 = 1 << 30;
+/// Limits of checkpoints. A large population of complete hierarchies takes a tenth of them.
+pub const CHECKPOINT_LIMITS: Limits = Limits {
+    bytes: 1 << 30,
+    depth: 32,
+    values: 1 << 28,
+};
 
 /// Largest value of a counter; 10 million control steps a second take 28 years to reach it.
 const MAX_COUNT: u64 = 1 << 53;
@@ -257,7 +260,8 @@ fn text_of(path: &Path) -> Result<Option<String>, CheckpointError> {
     if !path.exists() {
         return Ok(None);
     }
-    let text = read_text(path, MAX_CHECKPOINT_BYTES).map_err(|error| error.source)?;
+    let text = read_text(path, CHECKPOINT_LIMITS.bytes).map_err(|error| error.source)?;
+    CHECKPOINT_LIMITS.check(&text)?;
     Ok(Some(text))
 }
 

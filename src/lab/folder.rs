@@ -8,15 +8,15 @@ use std::time::Duration;
 use serde::Serialize;
 use tempfile::TempDir;
 
-use super::folder_error::{FolderError, Occupied};
+use super::folder_error::{FolderError, Occupied, with_free_path};
 use super::lock::{LOCK, OWNER, RunLock};
 use super::manifest::{MANIFEST_FORMAT, Manifest};
 use super::pulse::PULSE_FILE;
 use crate::files::{
-    FileError, WRITING, clean, parse_json, read_text, stated_format, sync_folder, without_path,
-    write_atomically,
+    FileError, Limits, WRITING, clean, parse_json, read_text, stated_format, sync_folder,
+    without_path, write_atomically,
 };
-use crate::scenario::MAX_FILE_BYTES;
+use crate::scenario;
 
 /// Name of the file that says what was run.
 pub const MANIFEST: &str = "run.json";
@@ -41,6 +41,13 @@ const OWN: [&str; 6] = [
     PULSE_FILE,
     GENERATIONS,
 ];
+
+/// Limits of `run.json`: it has a scenario and the starts of the program.
+const LIMITS: Limits = Limits {
+    bytes: 4 * scenario::LIMITS.bytes,
+    depth: scenario::LIMITS.depth + 1,
+    values: 2 * scenario::LIMITS.values,
+};
 
 /// Prefix of the names of run folders under construction.
 const NEW_RUN: &str = ".new-run-";
@@ -249,14 +256,15 @@ impl RunFolder {
                 path: folder.display().to_string(),
             });
         }
-        let text = read_text(&file, 4 * MAX_FILE_BYTES)?;
+        let text = read_text(&file, LIMITS.bytes)?;
         let wrong = |message: String| FileError::new(&file, message);
+        let json = |error| FileError::new(&file, error);
+        LIMITS.check(&text).map_err(json)?;
         if let Some(found) = stated_format(&text).filter(|&format| format != MANIFEST_FORMAT) {
             let message = format!("format: found {found}; allowed: {MANIFEST_FORMAT}");
             return Err(wrong(message).into());
         }
-        let mut manifest: Manifest =
-            parse_json(&text).map_err(|error| FileError::new(&file, error))?;
+        let mut manifest: Manifest = parse_json(&text).map_err(json)?;
         manifest.scenario = manifest
             .scenario
             .checked("scenario")
@@ -329,6 +337,11 @@ fn occupied(path: &Path, wanted: &Manifest) -> FolderError {
     };
     FolderError::Exists {
         path: path.display().to_string(),
+        instead: match by {
+            // The command would do the same run again.
+            Occupied::Same => None,
+            _ => with_free_path(&wanted.started, path),
+        },
         by,
     }
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 
-use super::checkpoint::MAX_CHECKPOINT_BYTES;
+use super::checkpoint::CHECKPOINT_LIMITS;
 use super::event::Event;
 use super::folder::{CHECKPOINT, EVENTS, MANIFEST, RunFolder};
 use super::integrity::{EventOrder, check_log};
@@ -201,7 +201,7 @@ impl Follower {
             return;
         }
         self.checkpoint = stamp;
-        let bytes = read_bytes(&self.folder.join(CHECKPOINT), MAX_CHECKPOINT_BYTES);
+        let bytes = read_bytes(&self.folder.join(CHECKPOINT), CHECKPOINT_LIMITS.bytes);
         // The process replaces the checkpoint again and again. One that cannot be read here is no
         // trouble: `check_log` reports a damaged one when the run is first seen, and so does resuming.
         let file = bytes

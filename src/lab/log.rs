@@ -8,10 +8,14 @@ use thiserror::Error;
 
 use super::checkpoint::LogPosition;
 use super::event::{EVENT_FORMAT, Event};
-use crate::files::{FileError, FileProblem, synced};
+use crate::files::{FileError, FileProblem, Limits, json_message, synced};
 
-/// Longest line that is read, in bytes. A generation of the largest allowed population fits.
-const MAX_LINE_BYTES: u64 = 1 << 26;
+/// Limits of a line. A generation of the largest allowed population fits.
+const LIMITS: Limits = Limits {
+    bytes: 1 << 26,
+    depth: 16,
+    values: 1 << 22,
+};
 
 /// Why an event log cannot be used.
 #[derive(Debug, Error)]
@@ -120,7 +124,7 @@ pub(super) fn check_prefix(
     let mut bytes = 0;
     while bytes < position.bytes {
         line.clear();
-        let wanted = (position.bytes - bytes).min(MAX_LINE_BYTES);
+        let wanted = (position.bytes - bytes).min(LIMITS.bytes);
         let read = reader.take(wanted).read_until(b'\n', &mut line)?;
         if read == 0 {
             return Err(mismatch(format!("{bytes} bytes")));
@@ -167,16 +171,18 @@ pub(super) fn read_event(
         message,
     };
     line.clear();
-    let read = reader.take(MAX_LINE_BYTES).read_until(b'\n', line)?;
+    let read = reader.take(LIMITS.bytes).read_until(b'\n', line)?;
     if line.last() != Some(&b'\n') {
-        if read as u64 == MAX_LINE_BYTES {
+        if read as u64 == LIMITS.bytes {
             return Err(wrong(format!(
-                "longer than allowed: {MAX_LINE_BYTES} bytes"
+                "longer than allowed: {} bytes",
+                LIMITS.bytes
             )));
         }
         return Ok(None);
     }
-    let event = serde_json::from_slice(line).map_err(|error| wrong(error.to_string()))?;
+    LIMITS.check(&*line).map_err(|error| wrong(error.message))?;
+    let event = serde_json::from_slice(line).map_err(|error| wrong(json_message(&error)))?;
     if let Event::Started { format, .. } = &event
         && *format != EVENT_FORMAT
     {

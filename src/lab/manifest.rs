@@ -6,6 +6,7 @@ use std::time::SystemTime;
 use serde::{Deserialize, Serialize};
 
 use crate::scenario::Scenario;
+use crate::words::shell_word;
 
 /// Version of the format of `run.json`.
 pub const MANIFEST_FORMAT: u32 = 1;
@@ -94,37 +95,4 @@ impl Invocation {
 pub(super) fn host_name() -> String {
     let system = rustix::system::uname();
     system.nodename().to_string_lossy().into_owned()
-}
-
-/// Returns a word of a shell command line, quoted if necessary. Control characters are escaped in
-/// the syntax of bash and zsh.
-#[must_use]
-pub fn shell_word(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:@%+,".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_owned();
-    }
-    if !word.contains(char::is_control) {
-        return format!("'{}'", word.replace('\'', r"'\''"));
-    }
-    let escaped = word.chars().map(|c| match c {
-        '\'' | '\\' => format!("\\{c}"),
-        c if c.is_control() => format!("\\u{:04x}", u32::from(c)),
-        c => c.to_string(),
-    });
-    format!("$'{}'", escaped.collect::<String>())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::shell_word;
-
-    #[test]
-    fn words_survive_the_shell() {
-        assert_eq!(shell_word("studies/thesis"), "studies/thesis");
-        assert_eq!(shell_word("my study"), "'my study'");
-        assert_eq!(shell_word("it's"), r"'it'\''s'");
-        assert_eq!(shell_word(""), "''");
-        assert_eq!(shell_word("a\nb's"), r"$'a\u000ab\'s'");
-    }
 }

@@ -47,7 +47,7 @@ pub use keep::Keep;
 pub use learn::{Course, LearnCheck, LearnError, LearnProtocol, Learned, learn};
 pub use learner::{Algorithm, GivenPolicy};
 pub use log::read_events;
-pub use manifest::{Invocation, Manifest, shell_word};
+pub use manifest::{Invocation, Manifest};
 pub use news::{Liveness, News, Recording};
 pub use outcome::{BestIndividual, Outcome};
 pub use run::{Run, RunOptions, resume, start};

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::folder::SUMMARY;
 use crate::evolution::{GenerationRecord, RankedRecord};
-use crate::files::{FileError, parse_json, read_text};
+use crate::files::{FileError, Limits, parse_json, read_text};
 
 /// The result of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,8 +32,12 @@ pub struct Outcome {
     pub run_dir: String,
 }
 
-/// Largest `summary.json` that is read, in bytes.
-const MAX_SUMMARY_BYTES: u64 = 1 << 20;
+/// Limits of `summary.json`.
+const LIMITS: Limits = Limits {
+    bytes: 1 << 20,
+    depth: 8,
+    values: 10_000,
+};
 
 impl Outcome {
     /// Reads the result of the run in a folder; returns `None` before evolution is over.
@@ -45,7 +49,8 @@ impl Outcome {
         if !fs::exists(&path).unwrap_or(true) {
             return Ok(None);
         }
-        let outcome = parse_json(&read_text(&path, MAX_SUMMARY_BYTES)?);
+        let text = read_text(&path, LIMITS.bytes)?;
+        let outcome = LIMITS.check(&text).and_then(|()| parse_json(&text));
         Ok(Some(outcome.map_err(|error| FileError::new(path, error))?))
     }
 }

@@ -32,7 +32,7 @@ pub use findings::{Comparison, Findings, JudgedClaim, MetricSummary, RunGroup, T
 pub use merge::{MergeError, merge};
 pub use numbers::Numbers;
 pub use pace::Pace;
-pub use plan::{MAX_PLAN_BYTES, PLAN_FILE, PLAN_FORMAT, Plan, Reevaluation};
+pub use plan::{PLAN_FILE, PLAN_FORMAT, PLAN_LIMITS, Plan, Reevaluation};
 pub use plan_error::PlanError;
 pub use provenance::Provenance;
 pub use results::{StudyRunError, WinnerEvaluation};

@@ -6,6 +6,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::words::quoted;
+
 /// Most numbers that a list may hold.
 const MAX_COUNT: u64 = 1_000_000;
 
@@ -51,7 +53,10 @@ impl FromStr for Numbers {
                 other.start() <= range.end() && range.start() <= other.end()
             };
             if ranges.iter().any(meets) {
-                return Err(format!("found {part:?} twice; allowed: each number once"));
+                return Err(format!(
+                    "found {} twice; allowed: each number once",
+                    quoted(part)
+                ));
             }
             count = count.saturating_add((range.end() - range.start()).saturating_add(1));
             if count > MAX_COUNT {
@@ -78,7 +83,8 @@ fn range(part: &str) -> Option<RangeInclusive<u64>> {
 
 fn wrong(part: &str) -> String {
     format!(
-        "found {part:?}; allowed: numbers and ranges separated by commas, such as 1..30 or 1,2,5..9"
+        "found {}; allowed: numbers and ranges separated by commas, such as 1..30 or 1,2,5..9",
+        quoted(part)
     )
 }
 

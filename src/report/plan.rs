@@ -4,15 +4,17 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::value::RawValue;
 
 use super::arm::{Arm, Base};
 use super::numbers::Numbers;
 use super::plan_error::PlanError;
-use crate::files::{FileError, parse_json, read_text, stated_format};
+use crate::files::{FileError, JsonError, Limits, parse_json, read_text, stated_format};
 use crate::rules::{NAMES, is_name};
-use crate::scenario::{EMBEDDED_PLANS, Scenario, ScenarioError};
+use crate::scenario::{self, EMBEDDED_PLANS, Scenario, ScenarioError};
+use crate::words::quoted;
 
 /// Version of the plan format.
 pub const PLAN_FORMAT: u32 = 1;
@@ -20,8 +22,12 @@ pub const PLAN_FORMAT: u32 = 1;
 /// The file in the folder of a study that holds its plan.
 pub const PLAN_FILE: &str = "study.json";
 
-/// Largest plan that is read, in bytes. A plan may hold many scenarios.
-pub const MAX_PLAN_BYTES: u64 = 1 << 24;
+/// Limits of plans. A plan may hold many scenarios.
+pub const PLAN_LIMITS: Limits = Limits {
+    bytes: 1 << 24,
+    depth: scenario::LIMITS.depth + 2,
+    values: 10 * scenario::LIMITS.values,
+};
 
 /// A plan with its scenarios written out. `study.json` holds one and can itself be used as a
 /// plan file.
@@ -99,7 +105,7 @@ impl Plan {
             }
         };
         let file = path.display().to_string();
-        let text = read_text(&path, MAX_PLAN_BYTES)?;
+        let text = read_text(&path, PLAN_LIMITS.bytes)?;
         Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))
     }
 
@@ -114,12 +120,24 @@ impl Plan {
         if path != Path::new(name) {
             return true;
         }
-        let text = read_text(&path, MAX_PLAN_BYTES).unwrap_or_default();
-        // A plan may lack either of them by mistake.
-        let mut keys = ["arms", "scenarios"].into_iter();
-        match serde_json::from_str::<Value>(&text) {
-            Ok(json) => keys.any(|key| json.get(key).is_some()),
-            Err(_) => keys.any(|key| text.contains(&format!("{key:?}"))),
+        let text = read_text(&path, PLAN_LIMITS.bytes).unwrap_or_default();
+        Self::is_text_of_plan(&text)
+    }
+
+    /// Returns whether a JSON text has arms or scenarios, as a plan has; a plan may lack either of
+    /// them by mistake. A text that is not JSON counts if it mentions them.
+    #[must_use]
+    pub fn is_text_of_plan(text: &str) -> bool {
+        #[derive(Deserialize)]
+        struct Keys {
+            arms: Option<IgnoredAny>,
+            scenarios: Option<IgnoredAny>,
+        }
+        match serde_json::from_str::<Keys>(text) {
+            Ok(Keys { arms, scenarios }) => arms.is_some() || scenarios.is_some(),
+            Err(_) => ["\"arms\"", "\"scenarios\""]
+                .iter()
+                .any(|key| text.contains(key)),
         }
     }
 
@@ -129,6 +147,9 @@ impl Plan {
     /// # Errors
     /// When the text is not a plan, or the plan cannot be carried out.
     pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Self, PlanError> {
+        PLAN_LIMITS
+            .check(text)
+            .map_err(|error| FileError::new(file, error))?;
         if let Some(found) = stated_format(text).filter(|&format| format != PLAN_FORMAT) {
             return Err(PlanError::Invalid {
                 file: file.to_owned(),
@@ -144,7 +165,7 @@ impl Plan {
     /// Returns the JSON Schema of plan files.
     #[must_use]
     pub fn schema() -> schemars::Schema {
-        schemars::schema_for!(PlanFile)
+        schemars::schema_for!(PlanFile<'static>)
     }
 
     /// Creates a plan for scenarios given by name. The first arm with the base
@@ -203,7 +224,10 @@ impl Plan {
             })
         };
         if !is_name(&self.name) {
-            return invalid("name", format!("found {:?}; allowed: {NAMES}", self.name));
+            return invalid(
+                "name",
+                format!("found {}; allowed: {NAMES}", quoted(&self.name)),
+            );
         }
         if self.scenarios.is_empty() || self.arms.is_empty() {
             let message = String::from("found none; allowed: at least one");
@@ -219,12 +243,18 @@ impl Plan {
             return invalid("arms", different());
         }
         if let Some(name) = names.iter().find(|name| !is_name(name)) {
-            return invalid("arms", format!("found name {name:?}; allowed: {NAMES}"));
+            return invalid(
+                "arms",
+                format!("found name {}; allowed: {NAMES}", quoted(name)),
+            );
         }
         let control = self.control.as_deref();
         if let Some(control) = control.filter(|control| !names.contains(control)) {
             let allowed = names.into_iter().collect::<Vec<_>>().join(", ");
-            return invalid("control", format!("found {control:?}; allowed: {allowed}"));
+            return invalid(
+                "control",
+                format!("found {}; allowed: {allowed}", quoted(control)),
+            );
         }
         self.check_reevaluation(file)?;
         for scenario in &self.scenarios {
@@ -278,7 +308,7 @@ fn file_of(name: &str) -> Option<PathBuf> {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "maxq-lab plan")]
-struct PlanFile {
+struct PlanFile<'t> {
     /// Version of this format: 1.
     #[schemars(range(min = 1, max = 1))]
     format: u32,
@@ -290,7 +320,8 @@ struct PlanFile {
     description: String,
     /// The scenarios, with different names.
     #[schemars(with = "Vec<ScenarioEntry>", length(min = 1))]
-    scenarios: Vec<Value>,
+    #[serde(borrow)]
+    scenarios: Vec<&'t RawValue>,
     /// The seeds: numbers and inclusive ranges, separated by commas, such as `1..30` or
     /// `1,2,5..9`.
     #[schemars(
@@ -300,7 +331,8 @@ struct PlanFile {
     seeds: Numbers,
     /// The arms, with different names.
     #[schemars(with = "Vec<ArmEntry>", length(min = 1))]
-    arms: Vec<Value>,
+    #[serde(borrow)]
+    arms: Vec<&'t RawValue>,
     /// Name of the control arm, against which claims are tested.
     #[serde(default)]
     control: Option<String>,
@@ -332,9 +364,9 @@ enum ArmEntry {
     Whole(Arm),
 }
 
-impl PlanFile {
+impl<'t> PlanFile<'t> {
     /// Parses plan `text`; `file` names it in errors.
-    fn parse(text: &str, file: &str) -> Result<Self, PlanError> {
+    fn parse(text: &'t str, file: &str) -> Result<Self, PlanError> {
         Ok(parse_json(text).map_err(|error| FileError::new(file, error))?)
     }
 
@@ -349,7 +381,7 @@ impl PlanFile {
             })
         });
         let scenarios = scenarios.collect::<Result<_, _>>()?;
-        let arms = self.arms.into_iter().enumerate().map(|(index, value)| {
+        let arms = self.arms.iter().enumerate().map(|(index, value)| {
             arm(value).map_err(|message| PlanError::Invalid {
                 file: file.to_owned(),
                 place: format!("arms[{index}]"),
@@ -369,28 +401,28 @@ impl PlanFile {
     }
 }
 
-fn scenario(value: &Value, folder: &Path) -> Result<Scenario, ScenarioError> {
-    match value {
-        Value::String(name) => {
-            let beside = folder.join(name);
-            if beside.is_file() {
-                Scenario::read(&beside)
-            } else {
-                Scenario::load(name)
-            }
-        }
-        whole => Scenario::parse(&whole.to_string(), "written in one line"),
+/// Returns the scenario that stands in a plan: a name, or a whole scenario.
+fn scenario(value: &RawValue, folder: &Path) -> Result<Scenario, ScenarioError> {
+    let Ok(name) = serde_json::from_str::<String>(value.get()) else {
+        return Scenario::parse(value.get(), "counted from its beginning");
+    };
+    let beside = folder.join(&name);
+    if beside.is_file() {
+        Scenario::read(&beside)
+    } else {
+        Scenario::load(&name)
     }
 }
 
-fn arm(value: Value) -> Result<Arm, String> {
-    match &value {
-        Value::String(name) => {
-            let base = Base::find(name);
-            base.map(Arm::of)
-                .ok_or_else(|| format!("found {name:?}; allowed: {}, or an arm", Base::names()))
-        }
-        _ => serde_path_to_error::deserialize(value)
-            .map_err(|error| format!("{}: {}", error.path(), error.inner())),
-    }
+/// Returns the arm that stands in a plan: the name of a base, or a whole arm.
+fn arm(value: &RawValue) -> Result<Arm, String> {
+    let Ok(name) = serde_json::from_str::<String>(value.get()) else {
+        let arm = parse_json(value.get());
+        return arm.map_err(|JsonError { place, message, .. }| format!("{place}: {message}"));
+    };
+    let base = Base::find(&name);
+    base.map(Arm::of).ok_or_else(|| {
+        let found = quoted(&name);
+        format!("found {found}; allowed: {}, or an arm", Base::names())
+    })
 }

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::arm::ArmError;
 use super::study::{RunId, Study};
-use crate::files::{FileError, parse_json, read_text};
+use crate::files::{FileError, Limits, parse_json, read_text};
 use crate::lab::{
     EVALUATION, Evaluation, FolderError, MANIFEST, Manifest, Outcome, RunError, RunFolder,
     SetupError, check_log,
@@ -20,8 +20,12 @@ use crate::scenario::Scenario;
 /// Version of the format of `evaluation.json`.
 pub(super) const EVALUATION_FORMAT: u32 = 1;
 
-/// Largest `evaluation.json` that is read, in bytes.
-const MAX_RESULT_BYTES: u64 = 1 << 24;
+/// Limits of `evaluation.json`.
+const LIMITS: Limits = Limits {
+    bytes: 1 << 24,
+    depth: 8,
+    values: 1 << 22,
+};
 
 /// Difference between the seed of a run and the seed of its winner's evaluation. It is far larger
 /// than the seeds that people choose, so an evaluation shares neither primitive subtasks nor
@@ -86,7 +90,8 @@ pub(super) fn evaluation(folder: &Path) -> Result<Option<WinnerEvaluation>, Stud
     if !fs::exists(&path).unwrap_or(true) {
         return Ok(None);
     }
-    let found = parse_json(&read_text(&path, MAX_RESULT_BYTES)?);
+    let text = read_text(&path, LIMITS.bytes)?;
+    let found = LIMITS.check(&text).and_then(|()| parse_json(&text));
     let found: WinnerEvaluation = found.map_err(|error| FileError::new(&path, error))?;
     if found.format != EVALUATION_FORMAT {
         let message = format!(

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::arm::Arm;
 use super::numbers::Numbers;
-use super::plan::{MAX_PLAN_BYTES, PLAN_FILE, Plan};
+use super::plan::{PLAN_FILE, PLAN_LIMITS, Plan};
 use super::plan_error::PlanError;
 use crate::files::{FileError, read_text, write_atomically};
 use crate::scenario::Scenario;
@@ -121,7 +121,7 @@ impl Study {
             });
         }
         let name = file.display().to_string();
-        let text = read_text(&file, MAX_PLAN_BYTES)?;
+        let text = read_text(&file, PLAN_LIMITS.bytes)?;
         Ok(Self {
             plan: Plan::parse(&text, &name, folder)?,
             folder: folder.to_owned(),

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::files::{FileError, parse_json, read_text, stated_format};
+use crate::files::{FileError, Limits, parse_json, read_standard_input, read_text, stated_format};
 use crate::rules::Problem;
 use crate::worlds::WorldSettings;
 
@@ -25,8 +25,15 @@ pub use settings::{
 /// The version of the scenario format that this program reads.
 pub const FORMAT: u32 = 1;
 
-/// Largest scenario file that is read, in bytes. The built-in ones are a hundred times smaller.
-pub const MAX_FILE_BYTES: u64 = 1 << 20;
+/// Limits of scenario files. The built-in ones are a hundred times smaller.
+pub const LIMITS: Limits = Limits {
+    bytes: 1 << 20,
+    depth: 16,
+    values: 100_000,
+};
+
+/// The name that means standard input.
+pub const STANDARD_INPUT: &str = "-";
 
 /// One experiment: a world, how agents learn in it, and how their hierarchies evolve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -50,7 +57,8 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Loads the file `name` if it exists, and else the built-in scenario of that name.
+    /// Loads the file `name` if it exists, and else the built-in scenario of that name; `-` is
+    /// standard input.
     ///
     /// # Examples
     /// ```
@@ -70,6 +78,9 @@ impl Scenario {
     /// breaks a rule.
     pub fn load(name: &str) -> Result<Self, ScenarioError> {
         let path = Path::new(name);
+        if name == STANDARD_INPUT {
+            return Self::parse(&read_standard_input(LIMITS.bytes)?, "standard input");
+        }
         if path.is_file() {
             return Self::read(path);
         }
@@ -89,7 +100,7 @@ impl Scenario {
     /// As [`Scenario::load`].
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
-        Self::parse(&read_text(path, MAX_FILE_BYTES)?, &file)
+        Self::parse(&read_text(path, LIMITS.bytes)?, &file)
     }
 
     /// Parses and checks the text of a scenario. Errors name it `file`.
@@ -97,13 +108,15 @@ impl Scenario {
     /// # Errors
     /// When the text is not a scenario or breaks a rule.
     pub fn parse(text: &str, file: &str) -> Result<Self, ScenarioError> {
+        let wrong = |error| FileError::new(file, error);
+        LIMITS.check(text).map_err(wrong)?;
         if let Some(format) = stated_format(text).filter(|&format| format != FORMAT) {
             return Err(ScenarioError::Invalid {
                 file: file.to_owned(),
                 problems: vec![Problem::new("format", format, FORMAT)],
             });
         }
-        let parsed: Self = parse_json(text).map_err(|error| FileError::new(file, error))?;
+        let parsed: Self = parse_json(text).map_err(wrong)?;
         parsed.checked(file)
     }
 

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::{Scenario, ScenarioError};
+use crate::words::{plain, quoted, shortened};
 
 /// Returns the scenario with every setting applied. Rules are not checked here.
 ///
@@ -13,7 +14,7 @@ pub(super) fn apply(scenario: &Scenario, settings: &[String]) -> Result<Scenario
         .iter()
         .try_fold(scenario.clone(), |scenario, setting| {
             apply_one(&scenario, setting).map_err(|message| ScenarioError::Setting {
-                setting: setting.clone(),
+                setting: shortened(setting),
                 message,
             })
         })
@@ -26,8 +27,10 @@ fn apply_one(scenario: &Scenario, setting: &str) -> Result<Scenario, String> {
     let mut json = serde_json::to_value(scenario).map_err(|error| error.to_string())?;
     *find(&mut json, key)? =
         serde_json::from_str(text).unwrap_or_else(|_| Value::String(text.to_owned()));
-    serde_path_to_error::deserialize(json)
-        .map_err(|error| format!("at {}: {}", error.path(), error.inner()))
+    serde_path_to_error::deserialize(json).map_err(|error| {
+        let (place, message) = (error.path().to_string(), error.inner().to_string());
+        format!("at {}: {}", shortened(&place), plain(&message))
+    })
 }
 
 /// Returns the value at the dotted path `key`.
@@ -41,7 +44,12 @@ fn find<'a>(root: &'a mut Value, key: &str) -> Result<&'a mut Value, String> {
             Value::Array(items) => part.parse().ok().and_then(|i: usize| items.get_mut(i)),
             _ => None,
         }
-        .ok_or_else(|| format!("found no {part:?} at {path}; allowed there: {allowed}"))?;
+        .ok_or_else(|| {
+            format!(
+                "found no {} at {path}; allowed there: {allowed}",
+                quoted(part)
+            )
+        })?;
         path = match path.as_str() {
             "the top level" => part.to_owned(),
             _ => format!("{path}.{part}"),

@@ -83,10 +83,13 @@ fn a_malformed_checkpoint_is_rejected() {
     let file = "checkpoint.json: ";
     assert_says(
         &says(&whole.as_bytes()[..whole.len() / 2]),
-        &[file, "line 1, column", "EOF"],
+        &[file, "line 1, column", "the text ends"],
     );
-    assert_says(&says(b""), &[file, "line 1, column 0", "EOF"]);
-    assert_says(&says(b"\xff\xfe"), &[file, "byte 0 is not UTF-8"]);
+    assert_says(&says(b""), &[file, "line 1, column 0", "the text ends"]);
+    assert_says(
+        &says(b"\xff\xfe"),
+        &[file, "found text in UTF-16; allowed: text in UTF-8"],
+    );
     assert_says(
         &says((whole.clone() + "{}").as_bytes()),
         &[file, "line 2", "trailing characters"],
@@ -171,11 +174,11 @@ fn a_state_that_does_not_fit_its_scenario_is_rejected() {
         ),
         (
             |s| s["surprise"] = json!(1),
-            "at state.surprise: unknown field `surprise`",
+            "at state.surprise: found the unknown field \"surprise\"",
         ),
         (
             |s| s["generation"] = json!(-1),
-            "at state.generation: invalid value: integer `-1`",
+            "at state.generation: found -1; allowed: a whole number",
         ),
         (
             |s| s["generation"] = json!(u64::MAX),
@@ -352,14 +355,17 @@ fn a_line_that_is_no_event_is_rejected_despite_a_correct_checksum() {
     for (log, says) in [
         (
             format!("{first}\n{{\"event\":\"nonsense\"}}\n"),
-            "events.jsonl: line 2: unknown variant `nonsense`",
+            "events.jsonl: line 2: found \"nonsense\"; allowed: ",
         ),
-        (format!("{first}\n\n"), "events.jsonl: line 2: EOF"),
+        (
+            format!("{first}\n\n"),
+            "events.jsonl: line 2: the text ends",
+        ),
         (
             format!("{first}\n\0\n"),
-            "events.jsonl: line 2: expected value",
+            "events.jsonl: line 2: found no JSON value",
         ),
-        (long + "\n", "events.jsonl: line 2: expected value"),
+        (long + "\n", "events.jsonl: line 2: found no JSON value"),
         (
             format!("{first}\n{}\n", "[".repeat(100_000)),
             "events.jsonl: line 2: ",
@@ -388,7 +394,7 @@ fn a_damaged_run_json_is_rejected() {
         &says(&whole[..whole.len() / 2]),
         &["run.json: line ", ", at scenario."],
     );
-    assert_says(&says(""), &["run.json: ", "EOF"]);
+    assert_says(&says(""), &["run.json: ", "the text ends"]);
     assert_says(
         &says(&(whole.clone() + "{}")),
         &["run.json: line ", ", at the end of the file: trailing"],
@@ -407,7 +413,7 @@ fn a_damaged_run_json_is_rejected() {
     let other = whole.replacen("\"seed\"", "\"sead\"", 1);
     assert_says(
         &says(&other),
-        &["run.json: line ", ", at sead: unknown field"],
+        &["run.json: line ", ", at sead: found the unknown field"],
     );
     fs::remove_file(victim.folder.join("run.json")).unwrap();
     assert_says(

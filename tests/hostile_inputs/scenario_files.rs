@@ -7,16 +7,20 @@ use super::{assert_says, check, fixture, refused};
 
 /// A fixture, the place of its fault, and the error.
 const BROKEN: &[(&str, &str, &str)] = &[
-    ("truncated.json", "line 7, column 22, at evolution", "EOF"),
+    (
+        "truncated.json",
+        "line 7, column 22, at evolution",
+        "the text ends",
+    ),
     (
         "wrong-type.json",
         "at evolution.population_size",
-        "string \"six\", expected usize",
+        "found \"six\"; allowed: a whole number from 0 to ",
     ),
     (
         "nan.json",
         "line 4, column 81, at world.foraging.arena.nest_mm[0]",
-        "expected value",
+        "found no JSON value",
     ),
     (
         "infinity.json",
@@ -26,27 +30,27 @@ const BROKEN: &[(&str, &str, &str)] = &[
     (
         "huge-number.json",
         "at world.foraging.arena.nest_mm[0]",
-        "number out of range",
+        "found a number that is too large",
     ),
     (
         "huge-integer.json",
         "at evolution.population_size",
-        "1.8446744073709552e+19`, expected usize",
+        "found 1.8446744073709552e+19; allowed: a whole number from 0 to ",
     ),
     (
         "negative-count.json",
         "at evolution.population_size",
-        "integer `-6`, expected usize",
+        "found -6; allowed: a whole number from 0 to ",
     ),
     (
         "short-list.json",
         "at world.foraging.arena.nest_mm",
-        "expected an array of length 2",
+        "allowed: a list of 2",
     ),
     (
         "unknown-field.json",
         "at evolution.populationSize",
-        "expected one of `population_size`",
+        "found the unknown field \"populationSize\"; allowed: population_size",
     ),
     ("unknown-format.json", "format", "found 2; allowed: 1"),
     (
@@ -63,11 +67,15 @@ const BROKEN: &[(&str, &str, &str)] = &[
     (
         "unknown-world.json",
         "at world",
-        "unknown variant `maze`, expected one of `",
+        "found \"maze\"; allowed: ",
     ),
-    ("not-utf8.json", "byte 31", "is not UTF-8"),
-    ("empty.json", "line 1, column 0", "EOF"),
-    ("list.json", "line 1", "expected a string"),
+    (
+        "not-utf8.json",
+        "byte 31",
+        "not UTF-8; allowed: text in UTF-8",
+    ),
+    ("empty.json", "line 1, column 0", "the text ends"),
+    ("list.json", "line 1", "allowed: "),
     (
         "raw-control-character.json",
         "line 1, column 7",
@@ -176,7 +184,7 @@ fn a_file_larger_than_any_scenario_is_rejected() {
     let said = refused(&mut check(&path));
     assert_says(
         &said,
-        &["large.json: is larger than allowed", "1048576 bytes"],
+        &["large.json: found more than 1048576 bytes; allowed: at most"],
     );
 }
 
@@ -214,5 +222,77 @@ fn trees_that_are_too_deep_or_too_long_are_rejected() {
     assert_says(
         &evaluate(&long),
         &["--tree: the hierarchy has 7006 bytes; allowed: at most 4096"],
+    );
+}
+
+#[test]
+fn a_byte_order_mark_is_left_out_and_utf_16_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.json");
+    let text = maxq_lab::scenario::EMBEDDED[0].json;
+    fs::write(&path, format!("\u{feff}{text}")).unwrap();
+    assert!(check(&path).output().unwrap().status.success());
+
+    let utf_16: Vec<u8> = [0xfeff]
+        .into_iter()
+        .chain(text.encode_utf16())
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    fs::write(&path, utf_16).unwrap();
+    let said = refused(&mut check(&path));
+    assert_says(&said, &["mine.json", "found text in UTF-16", "iconv"]);
+}
+
+/// The kinds: nothing but brackets, many objects, many texts, many numbers; each as a scenario and
+/// as a plan.
+#[test]
+fn no_text_takes_much_more_memory_than_its_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("large.json");
+    let texts = [
+        "[".repeat(15 << 20),
+        format!("{{\"arms\": [{}", "{\"a\": [[]]},".repeat(1 << 20)),
+        format!(
+            "{{\"arms\": [], \"scenarios\": [{}",
+            "\"\",".repeat(4 << 20)
+        ),
+        format!("{{\"arms\": [{}", "1,".repeat(7 << 20)),
+        format!("{{\"arms\": [], \"name\": \"{}\"}}", "x".repeat(15 << 20)),
+    ];
+    for text in texts {
+        fs::write(&path, &text).unwrap();
+        for command in ["check", "study", "study commands", "run"] {
+            // 150 MB of address space are enough for the program itself and 15 MB of text.
+            let line = format!("ulimit -v 150000; exec \"$0\" {command} \"$1\"");
+            let program = program();
+            let mut shell = std::process::Command::new("sh");
+            shell
+                .args(["-c", &line])
+                .arg(program.get_program())
+                .arg(&path);
+            let said = refused(&mut shell);
+            assert!(said.len() < 1000, "{command}: {said}");
+        }
+    }
+}
+
+#[test]
+fn standard_input_is_checked_as_a_file_is() {
+    let check = |text: &str| {
+        let mut command = assert_cmd::Command::from_std(program());
+        command.args(["check", "-"]).write_stdin(text.to_owned());
+        command.output().unwrap()
+    };
+    let smoke = maxq_lab::scenario::EMBEDDED[0].json;
+    let plan = maxq_lab::scenario::EMBEDDED_PLANS[0].json;
+    for valid in [smoke, plan] {
+        let said = String::from_utf8(check(valid).stdout).unwrap();
+        assert_eq!(said, "standard input: valid\n");
+    }
+    let wrong = check(&smoke.replace("\"format\": 1", "\"format\": 7"));
+    let said = String::from_utf8(wrong.stderr).unwrap();
+    assert!(
+        said.contains("standard input: format: found 7; allowed: 1"),
+        "{said}"
     );
 }

@@ -1,12 +1,12 @@
 //! Studies on several machines: `study commands`, `study slurm` and `study merge`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::StudyArgs;
 use crate::cli::output::{self, CommandResult};
-use crate::lab::shell_word;
 use crate::report::{PLAN_FILE, Study, merge};
+use crate::words::{shell_path, shell_word};
 
 /// The largest job array that Slurm allows by default (MaxArraySize 1001).
 const MAX_TASKS: usize = 1000;
@@ -68,9 +68,8 @@ struct ProgramArg {
 impl ProgramArg {
     /// The command line that does runs of `study`, without saying which.
     fn command(&self, study: &Study) -> String {
-        let word = |path: &Path| shell_word(&path.display().to_string());
-        let (program, folder) = (shell_word(&self.program), word(&study.folder));
-        let plan = word(&study.folder.join(PLAN_FILE));
+        let (program, folder) = (shell_word(&self.program), shell_path(&study.folder));
+        let plan = shell_path(study.folder.join(PLAN_FILE));
         format!("{program} study {plan} --out {folder} --jobs 1 --headless --only")
     }
 }

@@ -14,6 +14,7 @@ use crate::cli::output::{self, CommandResult, Failure};
 use crate::cli::signals::{SignalWatcher, Termination};
 use crate::dashboard::session::Exit;
 use crate::report::{RunId, RunState, Study, StudyControls, run_study, status};
+use crate::words::shell_path;
 
 /// Runs `maxq-lab study`.
 pub(super) fn main(args: &Args) -> CommandResult {
@@ -98,7 +99,10 @@ fn report(study: &Study, runs: &[RunId]) -> Result<usize, Failure> {
     let done = || now.iter().filter(|status| status.stage == RunState::Done);
     let folder = study.folder.display();
     let next = if done().count() == now.len() {
-        format!("; next: maxq-lab study report {folder}")
+        format!(
+            "; next: maxq-lab study report {}",
+            shell_path(&study.folder)
+        )
     } else {
         String::new()
     };

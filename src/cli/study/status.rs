@@ -9,6 +9,7 @@ use super::table;
 use crate::cli::dashboard::{DashboardArgs, exit_code};
 use crate::cli::output::{self, CommandResult, Format};
 use crate::report::{RunState, RunStatus, Study, status, write_report};
+use crate::words::shell_path;
 
 /// Show the progress of a study.
 #[derive(Debug, clap::Args)]
@@ -145,7 +146,7 @@ pub(super) struct WatchArgs {
 /// Runs `study watch`.
 pub(super) fn watch(args: &WatchArgs) -> CommandResult {
     let study = Study::open(&args.dir)?;
-    let instead = format!("maxq-lab study status {}", args.dir.display());
+    let instead = format!("maxq-lab study status {}", shell_path(&args.dir));
     let (dashboard, signals) = args.dashboard.require(&instead)?;
     exit_code(table::show(
         &study,

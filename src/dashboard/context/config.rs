@@ -10,9 +10,10 @@ use toml::Spanned;
 use crate::dashboard::keys::{Action, Collision, Key, KeyError, KeyMap};
 use crate::dashboard::look::{Paint, StyleError, Theme};
 use crate::files::{FileError, read_text};
+use crate::words::{plain, quoted, shortened};
 
 /// Size limit of the file, in bytes.
-const MAX_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = 1 << 16;
 
 /// Keys and themes as configured by the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,8 +57,11 @@ pub enum ConfigError {
 /// A problem with a value.
 #[derive(Debug, Error)]
 pub enum Problem {
+    /// It is not TOML of the right kind.
+    #[error("{0}")]
+    Syntax(String),
     /// The action does not exist.
-    #[error("keys: found {found:?}; allowed: {}", actions())]
+    #[error("keys: found {}; allowed: {}", quoted(.found), actions())]
     Action {
         /// The name found.
         found: String,
@@ -74,7 +78,7 @@ pub enum Problem {
     #[error("keys: {0}")]
     Collision(#[from] Collision),
     /// The theme does not exist.
-    #[error("theme: found {found:?}; allowed: {allowed}")]
+    #[error("theme: found {}; allowed: {allowed}", quoted(.found))]
     Theme {
         /// The name found.
         found: String,
@@ -82,7 +86,7 @@ pub enum Problem {
         allowed: String,
     },
     /// The paint does not exist.
-    #[error("styles: found {found:?}; allowed: {}", paints())]
+    #[error("styles: found {}; allowed: {}", quoted(.found), paints())]
     Paint {
         /// The name found.
         found: String,
@@ -118,7 +122,10 @@ struct File {
 
 /// One key or several.
 #[derive(Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "found neither; allowed: a key such as \"p\", or a list of keys such as [\"q\", \"Q\"]"
+)]
 enum Keys {
     One(String),
     Several(Vec<String>),
@@ -154,9 +161,17 @@ impl Config {
     /// # Errors
     /// When the text has an unknown name, or binds a key to two actions that can meet.
     pub fn read(text: &str, path: &str) -> Result<Self, ConfigError> {
-        let file: File = toml::from_str(text)
-            .map_err(|error| FileError::new(path, error.to_string().trim_end().to_owned()))?;
-        file.apply().map_err(|(at, problem)| ConfigError::Value {
+        let file = toml::from_str(text).map_err(|error| {
+            let at = error.span().map_or(0, |span| span.start);
+            let line = text.lines().nth(line_of(text, at) - 1);
+            let line = shortened(line.unwrap_or_default().trim());
+            (
+                at,
+                Problem::Syntax(format!("{line}: {}", plain(error.message()))),
+            )
+        });
+        let config = file.and_then(|file: File| file.apply());
+        config.map_err(|(at, problem)| ConfigError::Value {
             path: path.to_owned(),
             line: line_of(text, at),
             problem,

@@ -7,6 +7,7 @@ use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use thiserror::Error;
 
 use crate::dashboard::look::Signs;
+use crate::words::quoted;
 
 /// A key: a character as the terminal delivers it, or a named key, with Ctrl or Alt.
 ///
@@ -45,8 +46,8 @@ const MODIFIERS: &[(&str, KeyModifiers)] = &[
 /// A text that names no key.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "found {found:?}; allowed: a character, f1 to f12, {}, each optionally prefixed with ctrl- or alt-",
-    named()
+    "found {}; allowed: a character, f1 to f12, {}, each optionally prefixed with ctrl- or alt-",
+    quoted(.found), named()
 )]
 pub struct KeyError {
     /// The text.

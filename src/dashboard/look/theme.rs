@@ -6,6 +6,7 @@ use ratatui::style::{Color, Modifier, Style};
 use thiserror::Error;
 
 use super::paint::Paint;
+use crate::words::quoted;
 
 /// A style for each paint.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,9 +20,9 @@ pub struct Theme {
 /// A text that is not a style.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "found {found:?}; allowed: any of {}, then a colour, then 'on' and a background colour; a colour is a \
+    "found {}; allowed: any of {}, then a colour, then 'on' and a background colour; a colour is a \
      name such as red or light-blue, a number from 0 to 255, or #rrggbb",
-    modifiers()
+    quoted(.found), modifiers()
 )]
 pub struct StyleError {
     /// The text.

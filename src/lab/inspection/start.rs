@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::words::quoted;
+
 /// A state in which the trials of a rollout begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
@@ -16,8 +18,9 @@ pub struct Start {
 /// The error for a text that is not such a state.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
-    "found {found:?}; allowed: CASE at X,Y where the agent has room, followed by 'heading DEGREES' \
-     if agents have headings; X and Y in {unit}, from 0 to {extent}; CASE one of {cases}"
+    "found {}; allowed: CASE at X,Y where the agent has room, followed by 'heading DEGREES' \
+     if agents have headings; X and Y in {unit}, from 0 to {extent}; CASE one of {cases}",
+    quoted(.found)
 )]
 pub struct StartError {
     /// The text.

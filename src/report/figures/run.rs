@@ -7,10 +7,10 @@ use super::primitives::action_values;
 use super::{Chart, Figure, FigureNumber, Panel, Series, Sketch};
 use crate::evolution::GenerationRecord;
 use crate::lab::{
-    Event, Recording, RunError, SetupError, experiment, overrides, shell_word, summarise,
-    with_changes,
+    Event, Recording, RunError, SetupError, experiment, overrides, summarise, with_changes,
 };
 use crate::scenario::Scenario;
+use crate::words::shell_path;
 
 /// Number of hierarchies in Figure 4.9.
 const SELECTED_GENERATIONS: usize = 8;
@@ -90,7 +90,7 @@ impl RunSource {
 
     /// Returns the command that exports the run with these arguments.
     fn command(&self, arguments: &str) -> String {
-        let folder = shell_word(&self.folder.display().to_string());
+        let folder = shell_path(&self.folder);
         format!("maxq-lab export {folder} {arguments}")
     }
 

@@ -1,13 +1,18 @@
-//! Files: reads of possibly hostile files, and atomic writes.
+//! Files: reads of possibly hostile files, their limits, and atomic writes.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read, Write};
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use serde::Deserialize;
 use tempfile::NamedTempFile;
 use thiserror::Error;
+
+mod json;
+mod limits;
+
+pub use json::{JsonError, message as json_message, parse_json, stated_format};
+pub use limits::Limits;
 
 /// A file or folder that cannot be used, and why.
 #[derive(Debug, Error)]
@@ -39,16 +44,16 @@ pub enum FileProblem {
     #[error("cannot be read: {0}")]
     Unreadable(#[source] io::Error),
     /// It is larger than anything that this program writes.
-    #[error("is larger than allowed: more than {limit} bytes")]
+    #[error("found more than {limit} bytes; allowed: at most {limit}")]
     TooLarge {
         /// The limit in bytes.
         limit: u64,
     },
-    /// It is not text.
-    #[error("is not text: byte {at} is not UTF-8")]
+    /// It is not UTF-8.
+    #[error("found {found}; allowed: text in UTF-8{}", how_to_convert(*.found))]
     NotText {
-        /// Offset of the first byte that is not UTF-8.
-        at: usize,
+        /// What it is instead.
+        found: Encoding,
     },
     /// It is not the JSON that it should be.
     #[error(transparent)]
@@ -59,107 +64,95 @@ pub enum FileProblem {
     Wrong(String),
 }
 
+/// What a file is instead of text in UTF-8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Encoding {
+    /// It begins with the byte order mark of UTF-16.
+    #[error("text in UTF-16")]
+    Utf16,
+    /// It holds a byte that text in UTF-8 cannot have.
+    #[error("byte {at}, which is not UTF-8")]
+    Unknown {
+        /// Offset of the byte, from 0.
+        at: usize,
+    },
+}
+
+impl Encoding {
+    fn of(bytes: &[u8], first_wrong: usize) -> Self {
+        if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+            Self::Utf16
+        } else {
+            Self::Unknown { at: first_wrong }
+        }
+    }
+}
+
+fn how_to_convert(found: Encoding) -> &'static str {
+    match found {
+        Encoding::Utf16 => " ('iconv -f UTF-16 -t UTF-8 OLD > NEW' converts it)",
+        Encoding::Unknown { .. } => "",
+    }
+}
+
 impl From<String> for FileProblem {
     fn from(message: String) -> Self {
         Self::Wrong(message)
     }
 }
 
+/// The character that marks the order of bytes at the beginning of a file.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
 /// Reads a file of at most `limit` bytes, and never takes more into memory.
 ///
 /// # Errors
 /// Fails if the file cannot be read or is larger.
 pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
-    let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
-    read.map_err(|error| FileError::new(path, FileProblem::Unreadable(error)))?;
-    if bytes.len() as u64 > limit {
-        return Err(FileError::new(path, FileProblem::TooLarge { limit }));
-    }
-    Ok(bytes)
+    let file = File::open(path).map_err(FileProblem::Unreadable);
+    let read = file.and_then(|file| taken(file, limit));
+    read.map_err(|problem| FileError::new(path, problem))
 }
 
-/// Reads a UTF-8 file of at most `limit` bytes.
+/// Reads a UTF-8 file of at most `limit` bytes. A byte order mark at its beginning, which some
+/// editors write, is left out.
 ///
 /// # Errors
 /// Fails if the file cannot be read, is larger, or is not UTF-8.
 pub fn read_text(path: &Path, limit: u64) -> Result<String, FileError> {
-    String::from_utf8(read_bytes(path, limit)?).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        FileError::new(path, FileProblem::NotText { at })
-    })
+    text_of(read_bytes(path, limit)?).map_err(|problem| FileError::new(path, problem))
 }
 
-/// Returns the version in the `format` field of a JSON text, if it has one.
-///
-/// It is checked before anything else: other fields have other meanings in other formats.
-#[must_use]
-pub fn stated_format(text: &str) -> Option<u32> {
-    #[derive(Deserialize)]
-    struct AnyFormat {
-        format: u32,
-    }
-    let any: AnyFormat = serde_json::from_str(text).ok()?;
-    Some(any.format)
-}
-
-/// An error in a JSON text.
-#[derive(Debug, Error)]
-#[error("line {line}, column {column}, at {place}: {message}")]
-pub struct JsonError {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column, from 1.
-    pub column: usize,
-    /// Dotted path of the wrong value.
-    pub place: String,
-    /// What was found, and what was expected.
-    pub message: String,
-}
-
-const TOP: &str = "the top level";
-
-impl JsonError {
-    /// Returns the same error for a value that is the part `name` of another.
-    #[must_use]
-    pub fn within(self, name: &str) -> Self {
-        let place = match self.place.as_str() {
-            TOP => name.to_owned(),
-            place => format!("{name}.{place}"),
-        };
-        Self { place, ..self }
-    }
-
-    fn at(place: String, error: &serde_json::Error) -> Self {
-        let (line, column) = (error.line(), error.column());
-        let text = error.to_string();
-        let suffix = format!(" at line {line} column {column}");
-        Self {
-            line,
-            column,
-            place,
-            message: text.strip_suffix(&suffix).unwrap_or(&text).to_owned(),
-        }
-    }
-}
-
-/// Parses a JSON text of exactly one value.
+/// Reads the text on standard input, as [`read_text`] does a file.
 ///
 /// # Errors
-/// Fails with the place if the text is not JSON of the type.
-pub fn parse_json<'t, T: Deserialize<'t>>(text: &'t str) -> Result<T, JsonError> {
-    let mut json = serde_json::Deserializer::from_str(text);
-    let value = serde_path_to_error::deserialize(&mut json).map_err(|error| {
-        let place = match error.path().to_string().as_str() {
-            // `?` is a key that could not be read.
-            "." | "?" => String::from(TOP),
-            path => path.to_owned(),
-        };
-        JsonError::at(place, error.inner())
+/// Fails if it cannot be read, is larger, or is not UTF-8. The error calls it `standard input`.
+pub fn read_standard_input(limit: u64) -> Result<String, FileError> {
+    let refused = |problem| FileError::new("standard input", problem);
+    text_of(taken(io::stdin().lock(), limit).map_err(refused)?).map_err(refused)
+}
+
+/// Reads all that `source` has, if it is at most `limit` bytes.
+fn taken(source: impl Read, limit: u64) -> Result<Vec<u8>, FileProblem> {
+    let mut bytes = Vec::new();
+    let read = source.take(limit + 1).read_to_end(&mut bytes);
+    read.map_err(FileProblem::Unreadable)?;
+    if bytes.len() as u64 > limit {
+        return Err(FileProblem::TooLarge { limit });
+    }
+    Ok(bytes)
+}
+
+fn text_of(bytes: Vec<u8>) -> Result<String, FileProblem> {
+    let mut text = String::from_utf8(bytes).map_err(|error| {
+        let first_wrong = error.utf8_error().valid_up_to();
+        let found = Encoding::of(error.as_bytes(), first_wrong);
+        FileProblem::NotText { found }
     })?;
-    let end = json.end();
-    end.map_err(|error| JsonError::at(String::from("the end of the file"), &error))?;
-    Ok(value)
+    if text.starts_with(BYTE_ORDER_MARK) {
+        text.drain(..BYTE_ORDER_MARK.len_utf8());
+    }
+    Ok(text)
 }
 
 /// Prefix of the names of files that are being written. A process that dies leaves its files.
@@ -331,20 +324,9 @@ impl Stamp {
     }
 }
 
-/// Escapes control characters other than line breaks: text from files must not control a terminal.
-#[must_use]
-pub fn visible(text: &str) -> String {
-    let shown = |c: char| match c {
-        '\n' => vec!['\n'],
-        c if c.is_control() => c.escape_unicode().collect(),
-        c => vec![c],
-    };
-    text.chars().flat_map(shown).collect()
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{parse_json, synced};
+    use super::synced;
 
     #[test]
     fn a_file_system_that_cannot_sync_is_no_failure() {
@@ -354,28 +336,5 @@ mod tests {
         }
         assert!(synced(Err(Errno::IO.into())).is_err());
         assert!(synced(Err(Errno::NOSPC.into())).is_err());
-    }
-
-    #[test]
-    fn json_errors_say_once_where_they_are() {
-        #[derive(Debug, serde::Deserialize)]
-        struct Any {
-            #[expect(dead_code, reason = "only read")]
-            list: Vec<u8>,
-        }
-        let says = |text| parse_json::<Any>(text).unwrap_err().to_string();
-        let eof = "line 1, column 0, at the top level: EOF while parsing a value";
-        assert_eq!(says(""), eof);
-        let number = says("{\"list\":\n[1,-2]}");
-        assert!(
-            number.starts_with("line 2, column 5, at list[1]: invalid value"),
-            "{number}"
-        );
-        assert_eq!(number.matches("line").count(), 1, "{number}");
-        let more = says("{\"list\":[]} x");
-        assert!(
-            more.contains("at the end of the file: trailing characters"),
-            "{more}"
-        );
     }
 }
