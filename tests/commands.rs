@@ -35,6 +35,7 @@ const COMMANDS: &[&[&str]] = &[
     &["evaluate"],
     &["learn"],
     &["study"],
+    &["study", "add"],
     &["study", "status"],
     &["study", "watch"],
     &["study", "report"],

@@ -338,11 +338,60 @@ fn every_arm_fits_every_embedded_scenario() {
 }
 
 #[test]
+fn what_is_added_to_a_study_is_all_that_is_done() {
+    let parent = tempfile::tempdir().unwrap();
+    let at = |name: &str| parent.path().join(name);
+    let mut whole = plan(&[Base::Evolved, Base::Flat]);
+    whole.seeds = "1..3".parse().unwrap();
+    let mut grown = Study::create(plan(&[Base::Evolved]), &at("grown")).unwrap();
+    do_all(&grown);
+    let first = grown.run_folder(&grown.runs()[0]).join("summary.json");
+    let before = fs::read(&first).unwrap();
+
+    // The refusal of a larger plan names the command, unless arms have settings.
+    let mut larger = grown.plan.clone();
+    larger.seeds = whole.seeds.clone();
+    let said = Study::create(larger, &at("grown")).unwrap_err().to_string();
+    assert!(said.contains("seeds is 1..2 there, 1..3 here"), "{said}");
+    let command = format!("maxq-lab study add {} --seeds 1..3", at("grown").display());
+    assert!(said.contains(&command), "{said}");
+    let said = Study::create(whole.clone(), &at("grown")).unwrap_err();
+    assert!(!said.to_string().contains("study add"), "{said}");
+
+    let flat = whole.arms[1].clone();
+    let more = "3".parse().unwrap();
+    assert_eq!(grown.add(Some(&more), vec![flat.clone()]).unwrap(), 4);
+    assert_eq!(grown.add(Some(&more), vec![flat.clone()]).unwrap(), 0);
+    assert_eq!(Study::open(&at("grown")).unwrap().plan, whole);
+    let other = Arm {
+        settings: Vec::new(),
+        ..flat
+    };
+    let error = grown.add(None, vec![other]).unwrap_err().to_string();
+    assert!(
+        error.contains("arm flat: found another arm of this name"),
+        "{error}"
+    );
+
+    do_all(&grown);
+    assert_eq!(fs::read(&first).unwrap(), before, "it was not done again");
+    do_all(&Study::create(whole, &at("whole")).unwrap());
+    assert_same(&at("grown"), &at("whole"));
+}
+
+#[test]
 fn a_study_takes_no_folder_of_another_plan_and_no_run_of_another_study() {
     let parent = tempfile::tempdir().unwrap();
     let study = Study::create(plan(&[Base::Evolved]), parent.path()).unwrap();
     let error = Study::create(plan(&[Base::Flat]), parent.path()).unwrap_err();
-    assert!(error.to_string().contains("another plan"), "{error}");
+    let said = error.to_string();
+    for part in [
+        "holds the study of another plan: arms.evolved is {",
+        "arms.flat is nothing there, {",
+        "allowed: another folder",
+    ] {
+        assert!(said.contains(part), "{part:?} is not in {said}");
+    }
     assert_eq!(Study::open(parent.path()).unwrap(), study);
 
     let run = study.runs()[0];

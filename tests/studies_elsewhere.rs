@@ -151,6 +151,45 @@ fn parts_are_merged_in_any_order() {
 }
 
 #[test]
+fn parts_with_other_seeds_are_merged_and_other_differences_are_told() {
+    let parent = tempfile::tempdir().unwrap();
+    let plan = plan_in(parent.path(), false);
+    let at = |name: &str| parent.path().join(name);
+    let with = |name: &str, from: &str, to: &str| {
+        let file = at(name);
+        fs::write(&file, fs::read_to_string(&plan).unwrap().replace(from, to)).unwrap();
+        file
+    };
+    let both = with("both.json", "1..2", "1..2");
+    succeeds(&mut study(&both, &at("whole")));
+    succeeds(&mut study(&with("one.json", "1..2", "1"), &at("a")));
+    succeeds(&mut study(&with("two.json", "1..2", "2"), &at("b")));
+    let merge = |parts: [&str; 2], out: &str| {
+        let mut command = program();
+        command.args(["study", "merge"]).args(parts.map(at));
+        command.arg("--out").arg(at(out));
+        command
+    };
+    succeeds(&mut merge(["a", "b"], "ab"));
+    succeeds(&mut merge(["b", "a"], "ba"));
+    assert_same(&at("whole"), &at("ab"));
+    assert_same(&at("whole"), &at("ba"));
+    // The merged study may be a part, which then gets the seeds of the others.
+    succeeds(&mut merge(["a", "b"], "b"));
+    assert_same(&at("whole"), &at("b"));
+
+    let other = with("other.json", "\"warmup\":1", "\"warmup\":3");
+    succeeds(study(&other, &at("c")).args(["--only", "1"]));
+    let refused = output(&mut merge(["a", "c"], "ac"));
+    let said = stderr(&refused);
+    assert!(
+        said.contains("reevaluation.warmup is 3 there, 1 here; allowed"),
+        "{said}"
+    );
+    assert!(!at("ac").exists());
+}
+
+#[test]
 fn gnu_parallel_does_the_lines_of_the_plan() {
     if missing(&["parallel"]) {
         return;

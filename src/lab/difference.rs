@@ -31,11 +31,32 @@ impl fmt::Display for Difference {
 /// description do not count as settings.
 #[must_use]
 pub fn differences(one: &Scenario, other: &Scenario) -> Vec<Difference> {
-    let mut found = Vec::new();
     let json = |scenario: &Scenario| serde_json::to_value(scenario).unwrap_or_default();
-    compare("", Some(&json(one)), Some(&json(other)), &mut found);
+    let mut found = differences_in(&json(one), &json(other));
     found.retain(|difference| !["name", "description"].contains(&difference.key.as_str()));
     found
+}
+
+/// Returns the fields in which two JSON values differ, in the order of their paths.
+#[must_use]
+pub fn differences_in(one: &Value, other: &Value) -> Vec<Difference> {
+    let mut found = Vec::new();
+    compare("", Some(one), Some(other), &mut found);
+    found
+}
+
+/// Returns the first differences, of what is there from what is wanted here, and the number of the
+/// others.
+#[must_use]
+pub fn told(differences: &[Difference]) -> String {
+    let one =
+        |Difference { key, one, other }: &Difference| format!("{key} is {one} there, {other} here");
+    let mut told: Vec<_> = differences.iter().take(TOLD).map(one).collect();
+    let more = differences.len().saturating_sub(TOLD);
+    if more > 0 {
+        told.push(format!("and {more} more"));
+    }
+    told.join("; ")
 }
 
 /// Returns the settings in which a scenario overrides the built-in scenario of its name; none if

@@ -1,11 +1,10 @@
 //! Why a run folder cannot be used.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::difference::{Difference, differences};
+use super::difference::{Difference, differences, told};
 use super::manifest::{Invocation, Manifest};
 use crate::files::FileError;
 use crate::words::shell_word;
@@ -59,9 +58,6 @@ pub enum Occupied {
     NoRun,
 }
 
-/// Differences that are listed.
-const TOLD: usize = 6;
-
 impl Occupied {
     /// Returns what the run `found` means to the new run `wanted`.
     pub(super) fn by(found: &Manifest, wanted: &Manifest) -> Self {
@@ -92,30 +88,13 @@ impl Occupied {
             ),
             Self::Another(differences) => format!(
                 "and holds another run: {}; allowed: another --out, or --force to replace it",
-                Told(differences)
+                told(differences)
             ),
             Self::Unreadable => String::from(
                 "and holds a run.json that cannot be read; allowed: another --out, or --force to \
                  replace it",
             ),
             Self::NoRun => String::from("and is no run folder; allowed: another --out"),
-        }
-    }
-}
-
-/// Writes the first differences and the number of the others.
-struct Told<'d>(&'d [Difference]);
-
-impl fmt::Display for Told<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, difference) in self.0.iter().take(TOLD).enumerate() {
-            let Difference { key, one, other } = difference;
-            let separator = if index == 0 { "" } else { "; " };
-            write!(f, "{separator}{key} is {one} there, {other} here")?;
-        }
-        match self.0.len().saturating_sub(TOLD) {
-            0 => Ok(()),
-            more => write!(f, "; and {more} more"),
         }
     }
 }

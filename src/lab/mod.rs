@@ -35,7 +35,9 @@ mod world_experiment;
 pub use checkpoint::{Checkpoint, LogPosition};
 pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
-pub use difference::{Difference, differences, overrides, summarise, with_changes};
+pub use difference::{
+    Difference, differences, differences_in, overrides, summarise, told, with_changes,
+};
 pub use evaluate::{Evaluation, Protocol, Repeat, Scored, evaluate};
 pub use event::{Ending, Event};
 pub use experiment::AnyExperiment;

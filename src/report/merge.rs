@@ -11,7 +11,9 @@ use super::arm::ArmError;
 use super::results::{PlannedRun, StudyRunError, evaluation};
 use super::study::{RunId, Study, StudyError};
 use crate::files::{FileError, sync_folder};
-use crate::lab::{CHECKPOINT, EVALUATION, EVENTS, FolderError, MANIFEST, RunFolder};
+use crate::lab::{
+    CHECKPOINT, Difference, EVALUATION, EVENTS, FolderError, MANIFEST, RunFolder, told,
+};
 
 /// Files of a run that depend on the plan alone.
 const DETERMINED: [&str; 3] = [EVENTS, CHECKPOINT, EVALUATION];
@@ -26,12 +28,18 @@ pub enum MergeError {
     #[error(transparent)]
     Study(#[from] StudyError),
     /// A part has another plan than the first.
-    #[error("{path}: found another plan than in {first}; allowed: parts of one study")]
+    #[error(
+        "{path}: found another plan than in {first}: {}; allowed: parts of one study, whose plans \
+         differ in seeds only",
+        told(.differences)
+    )]
     Another {
         /// The part.
         path: String,
         /// The first part.
         first: String,
+        /// How its plan differs from that of the first part, apart from the seeds.
+        differences: Vec<Difference>,
     },
     /// A run cannot be read.
     #[error(transparent)]
@@ -71,6 +79,8 @@ struct Candidate {
 /// Merges the parts of a study in the folder `out`, which may itself be a part. Returns the number
 /// of runs that have been started.
 ///
+/// If the parts have different seeds, the merged study has the seeds of all.
+///
 /// Of every run, the part that is furthest is copied. If several parts have finished it, the files
 /// that depend on the plan alone must be the same bytes in all of them. `run.json` and
 /// `summary.json` also say where and when the run was done; of these the bytewise smallest is
@@ -78,22 +88,13 @@ struct Candidate {
 /// machine would have done.
 ///
 /// # Errors
-/// When parts have different plans, disagree, or are being worked on.
+/// When the plans of parts differ in more than seeds, or parts disagree, or are being worked on.
 pub fn merge(parts: &[PathBuf], out: &Path) -> Result<usize, MergeError> {
     let mut studies = Vec::new();
     for part in parts {
         studies.push(Study::open(part)?);
     }
-    let Some(first) = studies.first() else {
-        return Ok(0);
-    };
-    if let Some(other) = studies.iter().find(|study| study.plan != first.plan) {
-        return Err(MergeError::Another {
-            path: other.folder.display().to_string(),
-            first: first.folder.display().to_string(),
-        });
-    }
-    let merged = Study::create(first.plan.clone(), out)?;
+    let merged = merged_study(&studies, out)?;
     let mut runs = 0;
     for run in merged.runs() {
         let sources = studies.iter().chain([&merged]);
@@ -101,6 +102,40 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<usize, MergeError> {
         runs += usize::from(merge_run(&merged, &run, planned)?);
     }
     Ok(runs)
+}
+
+/// Returns the study in the folder `out`, with the plan of all parts. If they have different seeds,
+/// it has those of all, in order.
+fn merged_study(parts: &[Study], out: &Path) -> Result<Study, MergeError> {
+    let present = Study::is_in(out).then(|| Study::open(out)).transpose()?;
+    let mut all = parts.iter().chain(&present);
+    let Some(first) = all.next() else {
+        return Ok(Study::open(out)?);
+    };
+    let mut plan = first.plan.clone();
+    for other in all {
+        if !plan.differs_in_seeds_only(&other.plan) {
+            let mut differences = other.plan.differences(&plan);
+            differences.retain(|difference| difference.key != "seeds");
+            return Err(MergeError::Another {
+                path: other.folder.display().to_string(),
+                first: first.folder.display().to_string(),
+                differences,
+            });
+        }
+        if other.plan.seeds != plan.seeds {
+            let more = plan.with_more(Some(&other.plan.seeds), Vec::new());
+            plan = more.map_err(StudyError::from)?;
+            plan.seeds = plan.seeds.sorted();
+        }
+    }
+    let Some(mut merged) = present else {
+        return Ok(Study::create(plan, out)?);
+    };
+    if merged.plan != plan {
+        merged.grow(plan)?;
+    }
+    Ok(merged)
 }
 
 fn merge_run(

@@ -34,6 +34,42 @@ impl Numbers {
             .sum()
     }
 
+    /// Returns these numbers, then those of `more` that are not among them.
+    ///
+    /// # Errors
+    /// When they are too many.
+    pub fn with(&self, more: &Self) -> Result<Self, String> {
+        let lacking = more.iter().filter(|&number| !self.contains(number));
+        Self::of(self.iter().chain(lacking))
+    }
+
+    /// Returns the same numbers, the smallest first.
+    #[must_use]
+    pub fn sorted(&self) -> Self {
+        let mut ranges = self.ranges.clone();
+        ranges.sort_by_key(|range| *range.start());
+        let sorted = Self { ranges };
+        // There are not more of them than before.
+        Self::of(sorted.iter()).unwrap_or(sorted)
+    }
+
+    /// Joins distinct numbers to ranges.
+    fn of(numbers: impl Iterator<Item = u64>) -> Result<Self, String> {
+        let mut ranges: Vec<RangeInclusive<u64>> = Vec::new();
+        for (before, number) in (0..).zip(numbers) {
+            if before == MAX_COUNT {
+                return Err(format!("found more numbers; allowed: 1 to {MAX_COUNT}"));
+            }
+            match ranges.last_mut() {
+                Some(last) if last.end().checked_add(1) == Some(number) => {
+                    *last = *last.start()..=number;
+                }
+                _ => ranges.push(number..=number),
+            }
+        }
+        Ok(Self { ranges })
+    }
+
     /// Returns whether `number` is among them.
     #[must_use]
     pub fn contains(&self, number: u64) -> bool {
@@ -131,6 +167,20 @@ mod tests {
             ("1..30,42", 31)
         );
         assert!(numbers.contains(30) && !numbers.contains(31));
+    }
+
+    #[test]
+    fn lists_are_joined() {
+        let of = |text: &str| text.parse::<Numbers>().unwrap();
+        let joined = |one: &str, more: &str| of(one).with(&of(more)).unwrap().to_string();
+        assert_eq!(joined("1..30", "31..60"), "1..60");
+        assert_eq!(joined("1..30", "20..40,50"), "1..40,50");
+        assert_eq!(joined("5,1..3", "4"), "5,1..4");
+        assert_eq!(joined("1..3", "2"), "1..3");
+        assert_eq!(of("7,4..6,1").sorted().to_string(), "1,4..7");
+        let last = u64::MAX.to_string();
+        assert_eq!(joined(&last, "0"), format!("{last},0"));
+        of("1..600000").with(&of("600001..1200000")).unwrap_err();
     }
 
     #[test]

@@ -185,8 +185,7 @@ impl Plan {
         let scenarios: Vec<_> = loaded.collect::<Result<_, _>>()?;
         let names = scenarios.iter().map(|scenario| scenario.name.as_str());
         let name = names.collect::<Vec<_>>().join("_");
-        let control = arms.iter().find(|arm| arm.base == Base::RandomSelection);
-        Self {
+        let mut plan = Self {
             format: PLAN_FORMAT,
             // Many scenarios together are too long for a name.
             name: if is_name(&name) {
@@ -195,13 +194,23 @@ impl Plan {
                 String::from("study")
             },
             description: String::new(),
-            control: control.map(|arm| arm.name.clone()),
+            control: None,
             scenarios,
             seeds,
             arms,
             reevaluation: Reevaluation::default(),
+        };
+        plan.choose_control();
+        plan.checked(file)
+    }
+
+    /// Makes the first arm with the base `random_selection` the control, if there is none yet.
+    pub(super) fn choose_control(&mut self) {
+        if self.control.is_none() {
+            let mut arms = self.arms.iter();
+            let control = arms.find(|arm| arm.base == Base::RandomSelection);
+            self.control = control.map(|arm| arm.name.clone());
         }
-        .checked(file)
     }
 
     /// Returns the bytes of `study.json`.
@@ -215,7 +224,7 @@ impl Plan {
     }
 
     /// Returns this plan if it can be carried out.
-    fn checked(self, file: &str) -> Result<Self, PlanError> {
+    pub(super) fn checked(self, file: &str) -> Result<Self, PlanError> {
         let invalid = |place: &str, message: String| {
             Err(PlanError::Invalid {
                 file: file.to_owned(),

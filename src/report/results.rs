@@ -5,14 +5,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use thiserror::Error;
 
 use super::arm::ArmError;
 use super::study::{RunId, Study};
 use crate::files::{FileError, Limits, parse_json, read_text};
 use crate::lab::{
-    EVALUATION, Evaluation, FolderError, MANIFEST, Manifest, Outcome, RunError, RunFolder,
-    SetupError, check_log,
+    Difference, EVALUATION, Evaluation, FolderError, MANIFEST, Manifest, Outcome, RunError,
+    RunFolder, SetupError, check_log, differences_in, told,
 };
 use crate::learning::Stopped;
 use crate::scenario::Scenario;
@@ -65,10 +66,15 @@ pub enum StudyRunError {
     #[error(transparent)]
     Run(#[from] RunError),
     /// The folder holds another run than that of the plan.
-    #[error("{path}: holds another run; allowed: that of this study's plan, {expected}")]
+    #[error(
+        "{path}: holds another run: {}; allowed: that of this study's plan, {expected}",
+        told(.differences)
+    )]
     Another {
         /// The file.
         path: String,
+        /// How it differs from the run of the plan.
+        differences: Vec<Difference>,
         /// Name of the run of the plan.
         expected: String,
     },
@@ -159,6 +165,10 @@ impl PlannedRun {
         if manifest.scenario != expected || manifest.seed != self.run.seed {
             return Err(StudyRunError::Another {
                 path: self.folder.join(MANIFEST).display().to_string(),
+                differences: differences_in(
+                    &json!({ "scenario": manifest.scenario, "seed": manifest.seed }),
+                    &json!({ "scenario": expected, "seed": self.run.seed }),
+                ),
                 expected: self.name.clone(),
             });
         }

@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::addition;
 use super::arm::Arm;
 use super::numbers::Numbers;
 use super::plan::{PLAN_FILE, PLAN_LIMITS, Plan};
 use super::plan_error::PlanError;
 use crate::files::{FileError, read_text, write_atomically};
+use crate::lab::{Difference, told};
 use crate::scenario::Scenario;
 
 /// A study: a plan and the folder of its runs.
@@ -57,12 +59,18 @@ pub enum StudyError {
     },
     /// The folder holds the study of another plan.
     #[error(
-        "{path}: holds the study of another plan; allowed: another folder, or the plan that \
-         {path}/study.json says"
+        "{path}: holds the study of another plan: {}; allowed: another folder, or the plan that \
+         {path}/study.json says{}",
+        told(.differences),
+        .command.as_ref().map_or_else(String::new, |command| format!("; to add what is new: {command}"))
     )]
     Another {
         /// The folder.
         path: String,
+        /// How its plan differs from the one that was wanted.
+        differences: Vec<Difference>,
+        /// The command that adds to the study what is lacking, if that is all.
+        command: Option<String>,
     },
     /// The study has no such run.
     #[error("--only: found {found:?}; allowed: {allowed}")]
@@ -90,17 +98,50 @@ impl Study {
             if study.plan != plan {
                 return Err(StudyError::Another {
                     path: folder.display().to_string(),
+                    differences: study.plan.differences(&plan),
+                    command: addition::command(folder, &study.plan, &plan),
                 });
             }
             return Ok(study);
         }
         fs::create_dir_all(folder).map_err(refused)?;
-        let text = plan.to_file().map_err(|error| refused(error.into()))?;
-        write_atomically(&file, &text).map_err(refused)?;
-        Ok(Self {
+        let study = Self {
             plan,
             folder: folder.to_owned(),
-        })
+        };
+        study.write_plan()?;
+        Ok(study)
+    }
+
+    /// Gives the study another plan, which must have all the runs of the present one. Runs that exist
+    /// stay as they are.
+    ///
+    /// # Errors
+    /// When the operating system refuses.
+    pub(super) fn grow(&mut self, plan: Plan) -> Result<(), StudyError> {
+        self.plan = plan;
+        self.write_plan()
+    }
+
+    /// Adds those of these seeds and arms that the study lacks, and returns the number of new runs.
+    ///
+    /// # Errors
+    /// When the plan cannot be carried out with them, or the operating system refuses.
+    pub fn add(&mut self, seeds: Option<&Numbers>, arms: Vec<Arm>) -> Result<usize, StudyError> {
+        let before = self.runs().len();
+        let plan = self.plan.with_more(seeds, arms)?;
+        if plan != self.plan {
+            self.grow(plan)?;
+        }
+        Ok(self.runs().len() - before)
+    }
+
+    fn write_plan(&self) -> Result<(), StudyError> {
+        let file = self.folder.join(PLAN_FILE);
+        let refused = |error: io::Error| FileError::new(&file, error);
+        let text = self.plan.to_file();
+        let text = text.map_err(|error| refused(error.into()))?;
+        Ok(write_atomically(&file, &text).map_err(refused)?)
     }
 
     /// Returns whether a folder holds a study.

@@ -76,7 +76,8 @@ impl ProgramArg {
 
 /// Combine parts of a study that were done on different machines.
 ///
-/// For every run the most advanced folder is taken. A run that is finished in several parts must
+/// The plans of the parts may differ in their seeds; the combined study has all of them. For every
+/// run the most advanced folder is taken. A run that is finished in several parts must
 /// be identical in all of them. The order of the parts does not matter: the events,
 /// checkpoints, evaluations and report have the same bytes as if one machine had done the study.
 #[derive(Debug, clap::Args)]

@@ -1,5 +1,6 @@
 //! `maxq-lab study`: many runs, their progress and their report.
 
+mod add;
 mod distribute;
 mod progress;
 mod runs;
@@ -16,6 +17,7 @@ use super::output::{CommandResult, Failure};
 use crate::lab::Keep;
 use crate::report::{Arm, Base, Numbers, Plan, Study};
 use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Embedded};
+use crate::words::quoted;
 
 /// Run many seeds of scenarios and compare them.
 ///
@@ -42,6 +44,7 @@ Examples:
   maxq-lab study thesis --out studies/thesis               test the claims of the thesis
   maxq-lab study environment-1 environment-2 --seeds 1..10 --arms evolved,flat --out mine
   maxq-lab study studies/thesis                            resume a study
+  maxq-lab study add studies/thesis --seeds 31..60         plan more runs for it
   maxq-lab study status studies/thesis                     show its progress
   maxq-lab study watch studies/thesis                      watch it live
   maxq-lab study report studies/thesis                     write its report"
@@ -132,12 +135,7 @@ impl StudyArgs {
             return Ok(Plan::load(only)?);
         }
         self.refuse_other_than_scenarios()?;
-        let arms = self.arms.iter().map(|name| {
-            let base = Base::find(name);
-            base.map(Arm::of)
-                .ok_or_else(|| format!("--arms: found {name:?}; allowed: {}", Base::names()))
-        });
-        let mut arms: Vec<_> = arms.collect::<Result<_, _>>()?;
+        let mut arms = arms_of(&self.arms)?;
         if arms.is_empty() {
             arms = [Base::Evolved, Base::RandomSelection].map(Arm::of).into();
         }
@@ -172,8 +170,18 @@ impl StudyArgs {
     }
 }
 
+/// The arms of the bases with these names.
+fn arms_of(names: &[String]) -> Result<Vec<Arm>, Failure> {
+    let arm = |name: &String| {
+        let base = Base::find(name).map(Arm::of);
+        base.ok_or_else(|| format!("--arms: found {}; allowed: {}", quoted(name), Base::names()))
+    };
+    Ok(names.iter().map(arm).collect::<Result<_, _>>()?)
+}
+
 #[derive(Debug, Subcommand)]
 enum Command {
+    Add(add::AddArgs),
     Status(status::StatusArgs),
     Watch(status::WatchArgs),
     Report(status::ReportArgs),
@@ -186,6 +194,7 @@ enum Command {
 /// Runs `maxq-lab study` and its subcommands.
 pub(super) fn main(args: &Args) -> CommandResult {
     match &args.command {
+        Some(Command::Add(args)) => add::main(args),
         Some(Command::Status(args)) => status::show(args),
         Some(Command::Watch(args)) => status::watch(args),
         Some(Command::Report(args)) => status::report(args),
