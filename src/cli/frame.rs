@@ -124,6 +124,9 @@ pub(super) fn main(args: &Args) -> CommandResult {
     for event in recording.events {
         dashboard.update(Input::Event(Box::new(event)));
     }
+    if let Some(sign) = recording.last_sign {
+        dashboard.update(Input::LastSign(sign));
+    }
     dashboard.open(args.view);
     if let Some(generation) = args.generation {
         dashboard.travel_to(generation);

@@ -6,7 +6,7 @@ use super::args::{ExecutionArgs, ScenarioArgs};
 use super::live;
 use super::output::{self, CommandResult};
 use super::signals::SignalWatcher;
-use crate::lab::{Invocation, RunFolder, resume, start};
+use crate::lab::{Invocation, LastSign, RunFolder, resume, start};
 
 /// Evolve hierarchies for a scenario.
 ///
@@ -111,6 +111,9 @@ pub(super) fn resume_main(args: &ResumeArgs) -> CommandResult {
              from that of an uninterrupted run",
             then.version, then.commit, now.version, now.commit
         ));
+    }
+    if let Some(sign) = LastSign::read(&args.run_dir).filter(|sign| sign.error.is_some()) {
+        output::message(&format!("note: the process before {sign}"));
     }
     let execution = &args.execution;
     let dashboard = execution.dashboard.unless(execution.headless)?;

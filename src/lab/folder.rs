@@ -9,6 +9,7 @@ use serde::Serialize;
 use tempfile::TempDir;
 
 use super::folder_error::{FolderError, Occupied, with_free_path};
+use super::last_sign::{ERROR, forget_error, write_error};
 use super::lock::{LOCK, OWNER, RunLock};
 use super::manifest::{MANIFEST_FORMAT, Manifest};
 use super::pulse::PULSE_FILE;
@@ -33,8 +34,9 @@ pub const EVALUATION: &str = "evaluation.json";
 const GENERATIONS: &str = "generations";
 
 /// The files and folders of a run, apart from `run.json` and the lock.
-const OWN: [&str; 6] = [
+const OWN: [&str; 7] = [
     SUMMARY,
+    ERROR,
     EVALUATION,
     CHECKPOINT,
     EVENTS,
@@ -190,6 +192,15 @@ impl RunFolder {
     #[must_use]
     pub fn warning(&self) -> Option<String> {
         self.lock.warning()
+    }
+
+    /// Leaves `error` in the folder as the reason why work on the run failed; `None` removes it.
+    /// A failure is ignored.
+    pub fn leave_error(&self, error: Option<&str>) {
+        match error {
+            Some(error) => drop(write_error(&self.path, error)),
+            None => forget_error(&self.path),
+        }
     }
 
     /// Checks that no other process has taken this one for dead and works on the run now.

@@ -11,6 +11,7 @@ use super::checkpoint::CHECKPOINT_LIMITS;
 use super::event::Event;
 use super::folder::{CHECKPOINT, EVENTS, MANIFEST, RunFolder};
 use super::integrity::{EventOrder, check_log};
+use super::last_sign::{ERROR, LastSign, MAX_PULSE_BYTES};
 use super::lock::is_dead;
 use super::log::{LogError, read_event};
 use super::manifest::Manifest;
@@ -22,9 +23,6 @@ use crate::files::{FileError, Stamp, read_bytes};
 /// Time after which an unchanged pulse counts as stopped. Most network file systems show a change
 /// much sooner; the few that cache files for a minute make a run look silent for a while.
 const SILENCE: Duration = BEAT.saturating_mul(15);
-
-/// Largest pulse that is read, in bytes.
-const MAX_PULSE_BYTES: u64 = 1 << 16;
 
 /// Failed reads in a row before trouble is reported: a network file system may show a file
 /// before its content.
@@ -40,6 +38,8 @@ pub struct Follower {
     checkpoint: Option<Stamp>,
     beat: Option<(Beat, Instant)>,
     liveness: Option<Liveness>,
+    /// The version of `error.json` that was read last.
+    error: Option<Stamp>,
     unreadable: u32,
 }
 
@@ -70,6 +70,7 @@ impl Follower {
             checkpoint: None,
             beat: None,
             liveness: None,
+            error: None,
             unreadable: 0,
         }
     }
@@ -93,22 +94,27 @@ impl Follower {
     pub(super) fn read(mut self) -> Result<Recording, RunError> {
         let mut news = Vec::new();
         self.update(Instant::now(), &mut news)?;
-        let events = news.into_iter().filter_map(|news| match news {
-            News::Event(event) => Some(event),
-            _ => None,
-        });
-        let events = events.collect();
+        let (mut events, mut last_sign) = (Vec::new(), None);
+        for news in news {
+            match news {
+                News::Event(event) => events.push(event),
+                News::LastSign(sign) => last_sign = Some(sign),
+                _ => {}
+            }
+        }
         match self.run {
             Some(Stamped { value, .. }) => Ok(Recording {
                 manifest: value,
                 events,
                 liveness: self.liveness.unwrap_or(Liveness::Stopped),
+                last_sign,
             }),
             // Fails, and says what is missing.
             None => Ok(Recording {
                 manifest: RunFolder::read_manifest(&self.folder)?,
                 events,
                 liveness: Liveness::Absent,
+                last_sign,
             }),
         }
     }
@@ -143,6 +149,7 @@ impl Follower {
         let read = self.read_log(news);
         self.read_checkpoint(news);
         self.read_pulse(now, news);
+        self.read_last_sign(news);
         read
     }
 
@@ -246,6 +253,19 @@ impl Follower {
                     news,
                 );
             }
+        }
+    }
+
+    /// Reports the last sign of a process that is gone.
+    fn read_last_sign(&mut self, news: &mut Vec<News>) {
+        if matches!(self.liveness, Some(Liveness::Computing | Liveness::Absent)) {
+            return;
+        }
+        let error = self.stamp(ERROR);
+        let is_new = news.iter().any(|news| matches!(news, News::Liveness(_)));
+        if is_new || error != self.error {
+            self.error = error;
+            news.extend(LastSign::read(&self.folder).map(News::LastSign));
         }
     }
 

@@ -1,6 +1,7 @@
 //! What a reader of a run folder learns.
 
 use super::event::Event;
+use super::last_sign::LastSign;
 use super::manifest::Manifest;
 
 /// A change in a run folder.
@@ -13,6 +14,8 @@ pub enum News {
     Event(Event),
     /// The liveness of the run changed.
     Liveness(Liveness),
+    /// The process that computed the run is gone, and this was its last sign.
+    LastSign(LastSign),
     /// A file cannot be read; the follower tries again.
     Trouble(String),
 }
@@ -42,6 +45,8 @@ pub struct Recording {
     pub events: Vec<Event>,
     /// Its liveness, as far as a single read can tell.
     pub liveness: Liveness,
+    /// The last sign of the process that computed the run, if it is gone before the end.
+    pub last_sign: Option<LastSign>,
 }
 
 impl Recording {

@@ -9,7 +9,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use crossbeam_channel::{RecvTimeoutError, Sender, bounded};
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,9 @@ pub(super) struct Beat {
     pub(super) process: u32,
     /// Number of the beat, so that no two beats of a process are equal.
     pub(super) beat: u64,
+    /// The time, in UTC; for people, who compare it with nothing.
+    #[serde(default)]
+    pub(super) time: Option<String>,
     /// What the run is doing.
     pub(super) activity: Activity,
     /// How far the present generation is; `None` before anything was computed.
@@ -95,6 +98,7 @@ fn beat(number: u64, controls: &Controls) -> Beat {
         host: host_name(),
         process: std::process::id(),
         beat: number,
+        time: Some(humantime::format_rfc3339_seconds(SystemTime::now()).to_string()),
         activity: controls.activity(),
         progress,
     }

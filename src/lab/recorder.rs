@@ -18,6 +18,7 @@ use super::controls::Controls;
 use super::event::Event;
 use super::folder::RunFolder;
 use super::keep::Keep;
+use super::last_sign::forget_error;
 use super::log::Log;
 use crate::evolution::{EvolutionState, GenerationRecord};
 use crate::files::{FileProblem, link_atomically, write_atomically, write_in_one_step};
@@ -66,7 +67,7 @@ pub(super) struct Recorder<'r> {
     pub(super) seed: u64,
     pub(super) folder: &'r RunFolder,
     pub(super) keep: Keep,
-    pub(super) log: Log,
+    pub(super) log: &'r mut Log,
     pub(super) controls: &'r Controls,
 }
 
@@ -155,6 +156,8 @@ impl Recorder<'_> {
         } else {
             write_atomically(&checkpoint, &self.bytes(&pending)?)?;
         }
+        // The run goes on from here, so the error of the process before is no longer true.
+        forget_error(self.folder.path());
         self.controls
             .feed()
             .send(Event::CheckpointSaved { generation });

@@ -10,6 +10,7 @@ use super::controls::Controls;
 use super::event::{EVENT_FORMAT, Ending, Event};
 use super::folder::RunFolder;
 use super::keep::Keep;
+use super::last_sign::ErrorPlace;
 use super::log::Log;
 use super::outcome::{BestIndividual, Outcome};
 use super::pulse::Pulse;
@@ -62,15 +63,31 @@ impl Drop for Closing<'_> {
 }
 
 impl Work {
+    /// Does the work. An error is left in the run folder too.
     pub(super) fn run<W: World>(
-        self,
+        mut self,
+        experiment: &Experiment<W>,
+        seed: u64,
+    ) -> Result<Outcome, RunError> {
+        let controls = self.controls.clone();
+        let _closing = Closing(&controls);
+        let _pulse = Pulse::start(self.folder.path(), &controls);
+        let mut place = ErrorPlace::reserve(self.folder.path());
+        let done = self.record(experiment, seed);
+        if let Err(error) = &done {
+            place.write(error);
+        }
+        done
+    }
+
+    /// Evolves and records.
+    fn record<W: World>(
+        &mut self,
         experiment: &Experiment<W>,
         seed: u64,
     ) -> Result<Outcome, RunError> {
         let started = Instant::now();
         let controls = &self.controls;
-        let _closing = Closing(controls);
-        let _pulse = Pulse::start(self.folder.path(), controls);
         let (sender, messages) = bounded(QUEUE_CAPACITY);
         let requests = controls.checkpoint_requests();
         let recorder = Recorder {
@@ -79,7 +96,7 @@ impl Work {
             seed,
             folder: &self.folder,
             keep: self.keep,
-            log: self.log,
+            log: &mut self.log,
             controls,
         };
         let run = WorldRun {
@@ -88,9 +105,9 @@ impl Work {
             folder: &self.folder,
             workers: &self.workers,
             controls,
-            state: self.state,
+            state: self.state.take(),
         };
-        let past = self.past;
+        let past = std::mem::take(&mut self.past);
         let (progress, recorded) = thread::scope(|scope| {
             let recording = scope.spawn(move || recorder.run(&messages, &requests));
             let progress = run.evolve(past, sender);

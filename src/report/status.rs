@@ -9,7 +9,7 @@ use super::results::{PlannedRun, StudyRunError, evaluation};
 use super::study::{RunId, Study};
 use crate::files::Stamp;
 use crate::lab::{
-    EVALUATION, Event, Follower, Liveness, MANIFEST, News, Recording, RunError, SUMMARY,
+    EVALUATION, Event, Follower, LastSign, Liveness, MANIFEST, News, Recording, RunError, SUMMARY,
 };
 
 /// The state of a run.
@@ -78,6 +78,9 @@ pub struct RunStatus {
     pub best_steps: Vec<f64>,
     /// Mean time steps of a trial in the evaluation of its winner.
     pub fresh_steps: Option<f64>,
+    /// The last sign of the process that worked on it, if that is gone and left the work undone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last_sign: Option<LastSign>,
     /// The cause if it is unreadable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trouble: Option<String>,
@@ -127,6 +130,7 @@ fn waiting(study: &Study, run: RunId) -> RunStatus {
         converged: false,
         best_steps: Vec::new(),
         fresh_steps: None,
+        last_sign: None,
         trouble: None,
     }
 }
@@ -198,6 +202,7 @@ fn follow(
     follower.look(now, planned)?;
     status.generations = follower.generations;
     status.best_steps.clone_from(&follower.best_steps);
+    status.last_sign.clone_from(&follower.last_sign);
     status.stage = match follower.liveness {
         Liveness::Computing => RunState::Running,
         Liveness::Over => RunState::Evolved,
@@ -214,6 +219,10 @@ fn read_results(planned: &PlannedRun, status: &mut RunStatus) -> Result<(), Stud
         status.best_steps = outcome.best.iter().map(|best| best.fitness).collect();
         let fresh = evaluation(&status.folder)?;
         status.stage = fresh.as_ref().map_or(RunState::Evolved, |_| RunState::Done);
+        status.last_sign = match status.stage {
+            RunState::Evolved => LastSign::read(&status.folder),
+            _ => None,
+        };
         status.fresh_steps = fresh.map(|fresh| fresh.evaluation.mean);
     }
     Ok(())
@@ -226,6 +235,7 @@ struct Followed {
     generations: u64,
     best_steps: Vec<f64>,
     liveness: Liveness,
+    last_sign: Option<LastSign>,
 }
 
 impl Followed {
@@ -235,6 +245,7 @@ impl Followed {
             generations: 0,
             best_steps: Vec::new(),
             liveness: Liveness::Stopped,
+            last_sign: None,
         }
     }
 
@@ -251,7 +262,11 @@ impl Followed {
                     self.generations = record.generation;
                     self.best_steps.extend(record.mean_trial_steps(1));
                 }
-                News::Liveness(life) => self.liveness = life,
+                News::Liveness(life) => {
+                    self.liveness = life;
+                    self.last_sign = None;
+                }
+                News::LastSign(sign) => self.last_sign = Some(sign),
                 News::Event(_) | News::Trouble(_) => {}
             }
         }

@@ -171,8 +171,23 @@ impl StudyRun<'_> {
         folder: &Path,
         scenario: Scenario,
     ) -> Result<WinnerEvaluation, StudyRunError> {
+        let own = RunFolder::open(folder)?;
+        let evaluated = self.evaluate_in(folder, scenario);
+        match &evaluated {
+            Err(StudyRunError::Stopped(_)) => {}
+            Err(error) => own.leave_error(Some(&error.to_string())),
+            Ok(_) => own.leave_error(None),
+        }
+        evaluated
+    }
+
+    /// Evaluates the winner of the run in a locked folder.
+    fn evaluate_in(
+        &self,
+        folder: &Path,
+        scenario: Scenario,
+    ) -> Result<WinnerEvaluation, StudyRunError> {
         let path = folder.join(EVALUATION);
-        let _lock = RunFolder::open(folder)?;
         // Another process may have finished before the lock was free.
         if let Some(found) = evaluation(folder)? {
             return Ok(found);

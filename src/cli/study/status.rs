@@ -106,17 +106,20 @@ fn describe(study: &Study, runs: &[RunStatus]) -> String {
         matches!(
             status.stage,
             RunState::Running | RunState::Interrupted | RunState::Unreadable
-        )
+        ) || status.last_sign.is_some()
     };
     for status in runs.iter().filter(under_way) {
         let (name, word) = (&status.name, status.stage.word());
         let detail = status.trouble.clone().unwrap_or_else(|| {
             let best = status.best_steps.last();
             let best = best.map(|best| format!(", best {best:.0} steps per trial"));
+            let sign = status.last_sign.as_ref();
+            let sign = sign.map(|sign| format!(", {sign}"));
             format!(
-                "generation {}{}",
+                "generation {}{}{}",
                 status.generations,
-                best.unwrap_or_default()
+                best.unwrap_or_default(),
+                sign.unwrap_or_default()
             )
         });
         lines.push(format!("  {name}: {word}, {detail}"));

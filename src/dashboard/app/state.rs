@@ -117,6 +117,11 @@ impl App {
                 self.dirty = true;
                 self.context.closed = true;
             }
+            Input::LastSign(sign) => {
+                self.dirty = true;
+                self.context.show_message(sign.to_string());
+                self.context.last_sign = Some(sign);
+            }
             Input::Tick(elapsed) => self.tick(elapsed),
             Input::Population { generation, state } => {
                 self.dirty = true;
@@ -137,6 +142,7 @@ impl App {
             Event::Progress { control_steps, .. } => {
                 // A watched run may be resumed by another process.
                 context.closed = false;
+                context.last_sign = None;
                 context.pace.steps(*control_steps);
             }
             Event::Generation(record) => context.pace.generation(record.generation),

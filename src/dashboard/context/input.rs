@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::mouse::Mouse;
 use crate::dashboard::keys::Key;
 use crate::evolution::EvolutionState;
-use crate::lab::Event;
+use crate::lab::{Event, LastSign};
 
 /// An input of the dashboard.
 #[derive(Clone, Debug)]
@@ -21,6 +21,8 @@ pub enum Input {
     Event(Box<Event>),
     /// The run will emit no more events: it has finished, was stopped, or crashed.
     Closed,
+    /// The process that computed the run is gone before the end, and this was its last sign.
+    LastSign(LastSign),
     /// This much time has passed since the last tick.
     Tick(Duration),
     /// The population after a generation, or why it could not be loaded.

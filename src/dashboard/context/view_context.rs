@@ -12,7 +12,7 @@ use crate::dashboard::look::{Look, Paint};
 use crate::dashboard::view_id::ViewId;
 use crate::evolution::{GenerationRecord, RankedRecord};
 use crate::hierarchy::{Tree, parse};
-use crate::lab::{AnyExperiment, overrides};
+use crate::lab::{AnyExperiment, LastSign, overrides};
 use crate::scenario::Scenario;
 use crate::worlds::Catalogue;
 use crate::worlds::scene::Scenery;
@@ -103,6 +103,8 @@ pub struct ViewContext {
     pub clock: Duration,
     /// The speed of the run.
     pub pace: Pace,
+    /// The last sign of the process that computed the run, if it is gone before the end.
+    pub last_sign: Option<LastSign>,
     /// Whether the generations are being played.
     pub playing: bool,
     /// Whether the dashboard was opened from a list of runs to which the user can return.
@@ -143,6 +145,7 @@ impl ViewContext {
             focus: ViewId::Arena,
             clock: Duration::ZERO,
             pace: Pace::default(),
+            last_sign: None,
             playing: false,
             has_back: false,
             stepping: false,

@@ -171,6 +171,7 @@ impl<'s> Session<'s> {
         let effects = match news {
             News::Event(event) => self.app.update(Input::Event(Box::new(event))),
             News::Trouble(message) => self.app.update(Input::Message(message)),
+            News::LastSign(sign) => self.app.update(Input::LastSign(sign)),
             News::Run(manifest) => {
                 self.switch_to(*manifest);
                 Vec::new()

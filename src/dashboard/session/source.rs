@@ -44,7 +44,9 @@ impl<'s> Source<'s> {
     #[must_use]
     pub fn recorded(recording: Recording) -> Self {
         let events = recording.events.into_iter().map(News::Event);
-        Self::Recorded(events.chain([News::Liveness(recording.liveness)]).collect())
+        let last_sign = recording.last_sign.map(News::LastSign);
+        let end = std::iter::once(News::Liveness(recording.liveness)).chain(last_sign);
+        Self::Recorded(events.chain(end).collect())
     }
 
     /// Returns the news since the last call.

@@ -9,7 +9,7 @@ use super::shared::random_ranks;
 use super::view::View;
 use crate::dashboard::context::{Mode, ViewContext};
 use crate::dashboard::keys::Action;
-use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put, width};
+use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put, width, wrapped};
 use crate::lab::Ending;
 
 /// The state of the run, its settings, and the latest messages.
@@ -85,6 +85,7 @@ fn facts(context: &ViewContext, room: usize) -> Vec<Fact> {
     let scenario = context.scenario();
     let (sign, word, paint) = context.activity_mark();
     let mut facts = vec![("evolution", format!("{sign} {word}"), paint)];
+    facts.extend(last_sign(context, room));
     facts.extend(progress(context, room));
     let saved = match context.live_history().checkpoint() {
         Some(generation) => format!("after generation {generation}"),
@@ -109,7 +110,25 @@ fn facts(context: &ViewContext, room: usize) -> Vec<Fact> {
     facts
 }
 
-/// Most changed settings that are listed.
+/// Tells when the process that is gone was last alive, and why it failed.
+fn last_sign(context: &ViewContext, room: usize) -> Vec<Fact> {
+    let Some(sign) = &context.last_sign else {
+        return Vec::new();
+    };
+    let mut facts = vec![("last alive", sign.time.clone(), Paint::Notice)];
+    if let Some(error) = &sign.error {
+        let names = std::iter::once("failed").chain(std::iter::repeat(""));
+        let lines = wrapped(&one_line(error), room, "").into_iter().take(LISTED);
+        facts.extend(
+            names
+                .zip(lines)
+                .map(|(name, line)| (name, line, Paint::Bad)),
+        );
+    }
+    facts
+}
+
+/// Most changed settings that are listed, and most lines of an error.
 const LISTED: usize = 4;
 
 /// Returns a setting with as much of its path as fits.
