@@ -119,7 +119,7 @@ fn recorded(scenario: &Scenario, threads: usize, keep: Keep) -> Result<(), Error
     let folder = tempfile::tempdir()?;
     let options = RunOptions {
         threads,
-        keep,
+        keep: Some(keep),
         force: false,
     };
     start(scenario.clone(), SEED, &folder.path().join("run"), &options)?.join()?;

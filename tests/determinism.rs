@@ -134,7 +134,7 @@ fn a_slow_or_missing_reader_changes_nothing() {
 fn the_kept_generations_change_nothing() {
     let all = record(&short(&[]), 1, &threads(2));
     let none = RunOptions {
-        keep: "none".parse().unwrap(),
+        keep: Some("none".parse().unwrap()),
         ..threads(2)
     };
     record(&short(&[]), 1, &none).assert_same(&all, "nothing kept");

@@ -199,7 +199,10 @@ fn a_killed_run_is_reported_as_silent() {
     child.kill().unwrap();
     child.wait().unwrap();
     follower.until_liveness(Liveness::Silent);
-    assert_eq!(Recording::read(&folder).unwrap().liveness, Liveness::Silent);
+    let recording = Recording::read(&folder).unwrap();
+    assert_eq!(recording.liveness, Liveness::Silent);
+    let sign = recording.last_sign.unwrap();
+    assert!(sign.error.is_none() && sign.to_string().starts_with("last alive at 2"));
     wait_until("the last event", || {
         follower.told.extend(follower.watch.news.try_iter());
         follower.recorded() == log_of(&folder)

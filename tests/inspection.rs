@@ -35,7 +35,10 @@ impl Finished {
     fn new(scenario: Scenario, keep: Keep) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run");
-        let options = RunOptions { keep, ..threads(1) };
+        let options = RunOptions {
+            keep: Some(keep),
+            ..threads(1)
+        };
         run_in(&path, &scenario, SEED, &options);
         let events = read_events(&path.join("events.jsonl")).unwrap();
         let records = events.into_iter().filter_map(|event| match event {

@@ -18,7 +18,11 @@ use common::{
     Record, lines, output, program, run_in, set, short, smoke, stderr, stop_after, threads,
     wait_until,
 };
-use maxq_lab::lab::{Checkpoint, Outcome, resume, start};
+use maxq_lab::lab::inspection::Archive;
+use maxq_lab::lab::{
+    Checkpoint, Event, Keep, LastSign, Outcome, Recording, RunOptions, kept_generations,
+    lasting_experiment, resume, resume_at, start,
+};
 use maxq_lab::random::{Purpose, stream};
 use rand::RngExt;
 use tempfile::TempDir;
@@ -282,4 +286,195 @@ fn resuming_a_finished_run_changes_nothing() {
     };
     assert_eq!(timeless(again), timeless(first));
     Record::of(&folder).assert_same(&expected, "resumed when it was over");
+}
+
+#[test]
+fn a_failed_run_leaves_its_reason_until_it_is_resumed() {
+    let parent = TempDir::new().unwrap();
+    let undisturbed = parent.path().join("undisturbed");
+    run_in(&undisturbed, &smoke(LONGER), 1, &threads(2));
+    let folder = parent.path().join("run");
+    let run = start(smoke(LONGER), 1, &folder, &threads(2)).unwrap();
+    let lived = |event: Event| matches!(event, Event::Generation(_));
+    assert!(run.events.iter().any(lived));
+    run.controls.pause();
+    // A file in the place of the folder can be written to by nobody.
+    let (generations, aside) = (folder.join("generations"), folder.join("aside"));
+    fs::rename(&generations, &aside).unwrap();
+    fs::write(&generations, "").unwrap();
+    run.controls.resume();
+    let error = run.join().unwrap_err().to_string();
+
+    let sign = LastSign::read(&folder).unwrap();
+    assert_eq!(sign.error.as_deref(), Some(&*error));
+    assert_eq!(sign.time.len(), 20);
+    assert_eq!(Recording::read(&folder).unwrap().last_sign, Some(sign));
+    assert!(!folder.join(".writing-error").exists() && !folder.join("pulse.json").exists());
+    let size = ["--size", "200x30"];
+    let shown = output(
+        program()
+            .args(["frame", "--view", "status"])
+            .args(size)
+            .arg(&folder),
+    );
+    let shown = common::stdout(&shown);
+    assert!(
+        shown.contains("last alive  2") && shown.contains("cannot be written"),
+        "{shown}"
+    );
+
+    fs::remove_file(&generations).unwrap();
+    fs::rename(&aside, &generations).unwrap();
+    let resumed = output(&mut resume_command(&folder));
+    assert!(resumed.status.success(), "{}", stderr(&resumed));
+    let said = stderr(&resumed);
+    assert!(
+        said.contains("note: the process before failed at 2"),
+        "{said}"
+    );
+    assert_eq!(LastSign::read(&folder), None);
+    Record::of(&folder).assert_same(&Record::of(&undisturbed), "after a failure");
+}
+
+#[test]
+fn a_kept_state_takes_the_place_of_a_damaged_checkpoint() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("my run");
+    run_in(&folder, &short(&[]), 1, &threads(2));
+    let (expected, expected_kept) = (Record::of(&folder), kept(&folder));
+    let checkpoint = folder.join("checkpoint.json");
+    let half = &expected.checkpoint[..expected.checkpoint.len() / 2];
+    for damaged in [&b""[..], half, b"{}"] {
+        // The latest kept state is the same file under another name.
+        fs::remove_file(&checkpoint).unwrap();
+        fs::write(&checkpoint, damaged).unwrap();
+        let refused = output(&mut resume_command(&folder));
+        assert_eq!(refused.status.code(), Some(1));
+        let offer = format!(
+            "take its place: maxq-lab resume '{}' --at 6",
+            folder.display()
+        );
+        let said = stderr(&refused);
+        assert!(said.contains(&offer), "{said}");
+        let replayed = Recording::read(&folder).unwrap_err().to_string();
+        assert!(replayed.contains(&offer), "{replayed}");
+
+        for at in ["6", "1", "4"] {
+            let resumed = output(resume_command(&folder).args(["--at", at]));
+            let said = stderr(&resumed);
+            assert!(resumed.status.success(), "{said}");
+            assert!(said.contains(&format!("goes back to generation {at}; dropped")));
+            let when = format!("resumed at {at} without its checkpoint");
+            Record::of(&folder).assert_same(&expected, &when);
+            assert!(kept(&folder) == expected_kept, "{when}");
+        }
+    }
+}
+
+#[test]
+fn a_state_before_the_damage_of_the_log_is_offered() {
+    let parent = TempDir::new().unwrap();
+    let folder = parent.path().join("run");
+    run_in(&folder, &short(&[]), 1, &threads(2));
+    let expected = Record::of(&folder);
+    let log = folder.join("events.jsonl");
+    // In the line of generation 3.
+    let mut bytes = expected.events.clone();
+    let ends = bytes.iter().enumerate().filter(|(_, byte)| **byte == b'\n');
+    let third = ends.map(|(at, _)| at).nth(2).unwrap();
+    bytes[third + 50] ^= 1;
+    fs::write(&log, bytes).unwrap();
+    let said = stderr(&output(&mut resume_command(&folder)));
+    assert!(said.contains("events.jsonl: found CRC-32") && said.contains("--at 2\n"));
+    let said = stderr(&output(resume_command(&folder).args(["--at", "5"])));
+    assert!(said.contains("--at 2\n"), "{said}");
+    resume_at(&folder, 2, None, &threads(2))
+        .unwrap()
+        .join()
+        .unwrap();
+    Record::of(&folder).assert_same(&expected, "from before the damage");
+
+    for missing in ["0", "7", "18446744073709551615"] {
+        let said = stderr(&output(resume_command(&folder).args(["--at", missing])));
+        let wanted = format!("--at: found {missing}; allowed: a generation whose state is kept");
+        assert!(
+            said.contains(&wanted) && said.contains("(1 to 6)"),
+            "{said}"
+        );
+    }
+    fs::remove_dir_all(folder.join("generations")).unwrap();
+    fs::write(folder.join("checkpoint.json"), "").unwrap();
+    let said = stderr(&output(&mut resume_command(&folder)));
+    assert!(
+        said.contains("no kept state in generations/ can take its place"),
+        "{said}"
+    );
+}
+
+#[test]
+fn going_back_with_a_lower_limit_equals_a_run_with_that_limit() {
+    let parent = TempDir::new().unwrap();
+    let (folder, shorter) = (parent.path().join("run"), parent.path().join("shorter"));
+    run_in(&folder, &short(&[]), 1, &threads(2));
+    let limit = short(&["evolution.generation_limit=4"]);
+    run_in(&shorter, &limit, 1, &threads(2));
+    let run = resume_at(&folder, 2, Some(4), &threads(2)).unwrap();
+    assert_eq!(run.join().unwrap().generations, 4);
+    Record::of(&folder).assert_same(&Record::of(&shorter), "back to 2, on to 4");
+    assert!(kept(&folder) == kept(&shorter));
+}
+
+#[test]
+fn a_run_thins_out_what_it_keeps_also_when_it_is_resumed() {
+    let scenario = smoke(
+        &[
+            common::SHORT,
+            &[
+                "evolution.variation=random_trees",
+                "evolution.trial_step_limit=100",
+                "evolution.generation_limit=140",
+            ],
+        ]
+        .concat(),
+    );
+    let parent = TempDir::new().unwrap();
+    let at = |name: &str| parent.path().join(name);
+    let keeping = |keep| RunOptions {
+        keep: Some(keep),
+        ..threads(2)
+    };
+    run_in(&at("whole"), &scenario, 1, &threads(2));
+    let expected: Vec<u64> = (1..=140)
+        .filter(|generation| match 140 - generation {
+            0..64 => true,
+            64..128 => generation % 2 == 0,
+            _ => generation % 4 == 0,
+        })
+        .collect();
+    assert_eq!(kept_generations(&at("whole")), expected);
+
+    let run = start(scenario.clone(), 1, &at("stopped"), &threads(2)).unwrap();
+    stop_after(run, 80);
+    resumed(&at("stopped"), None);
+    assert_eq!(kept_generations(&at("stopped")), expected);
+    Record::of(&at("stopped")).assert_same(&Record::of(&at("whole")), "thinned");
+
+    // What was asked for at the start holds until something else is asked for.
+    let run = start(scenario.clone(), 1, &at("even"), &keeping(Keep::Every(2))).unwrap();
+    stop_after(run, 9);
+    resumed(&at("even"), None);
+    let even: Vec<u64> = (2..=140).step_by(2).collect();
+    assert_eq!(kept_generations(&at("even")), even);
+    resume(&at("even"), None, &keeping(Keep::Thinned))
+        .unwrap()
+        .join()
+        .unwrap();
+    let both: Vec<u64> = expected.iter().copied().filter(|n| n % 2 == 0).collect();
+    assert_eq!(kept_generations(&at("even")), both);
+
+    let experiment = lasting_experiment(scenario, 1).unwrap();
+    let mut archive = Archive::new(experiment, &at("whole"), None);
+    for (wanted, nearest) in [(3, 4), (5, 4), (13, 12), (16, 16), (139, 139), (500, 140)] {
+        assert_eq!(archive.nearest(wanted).unwrap().generation, nearest);
+    }
 }

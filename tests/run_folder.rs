@@ -151,6 +151,7 @@ fn without_out_the_folder_is_named_after_scenario_and_seed() {
 fn keep_selects_the_generations_that_are_kept() {
     for (keep, kept) in [
         ("all", &[1, 2, 3, 4, 5, 6][..]),
+        ("thinned", &[1, 2, 3, 4, 5, 6]),
         ("none", &[]),
         ("2", &[2, 4, 6]),
         ("5", &[5]),
@@ -158,7 +159,10 @@ fn keep_selects_the_generations_that_are_kept() {
         let keep: Keep = keep.parse().unwrap();
         let parent = TempDir::new().unwrap();
         let folder = parent.path().join("run");
-        let options = RunOptions { keep, ..threads(2) };
+        let options = RunOptions {
+            keep: Some(keep),
+            ..threads(2)
+        };
         let outcome = run_in(&folder, &short(&[]), 1, &options);
         assert_eq!(
             outcome.generations, 6,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::args::useful_threads;
-use super::output::{CommandResult, Failure, Format};
+use super::output::{self, CommandResult, Failure, Format};
 use super::signals::{SignalWatcher, Termination};
 use crate::evolution::Workers;
 use crate::lab::{AnyExperiment, experiment};
@@ -52,6 +52,9 @@ impl AnswerArgs {
         let stop = move || stopping.stop();
         SignalWatcher::start()?.stop_on_signals(&termination, false, stop)?;
         let experiment = experiment(scenario, self.seed)?;
+        let name = &experiment.scenario().name;
+        let odd = experiment.warnings().into_iter();
+        output::warnings(&odd.map(|odd| format!("{name}: {odd}")).collect::<Vec<_>>());
         let answer = compute(Resources {
             experiment: &*experiment,
             workers: &Workers::new(useful_threads(self.threads).get())?,

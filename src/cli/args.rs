@@ -95,9 +95,14 @@ pub(super) struct ExecutionArgs {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: u16,
 
-    /// Which checkpoints to keep in generations/: all, none, or one every N generations.
-    #[arg(long, value_name = "all|none|N", default_value = "all")]
-    keep: Keep,
+    /// Which states to keep in generations/, for looking at past generations: thinned, all, none,
+    /// or one every N generations [default: thinned; a resumed run: as it was started].
+    ///
+    /// thinned: those of the last 64 generations, every second of the 64 before, every fourth of
+    /// the 128 before these, and so on, so that the folder hardly grows. all: the program says
+    /// what that costs.
+    #[arg(long, value_name = "thinned|all|none|N")]
+    keep: Option<Keep>,
 
     /// Show a progress bar instead of the dashboard.
     #[arg(long)]
@@ -130,15 +135,8 @@ impl ExecutionArgs {
 
     /// The arguments with which another process resumes the run without a terminal.
     pub(super) fn resume_headless(&self) -> Vec<String> {
-        let (threads, keep) = (self.threads.to_string(), self.keep.to_string());
-        let words = [
-            "resume",
-            "--headless",
-            "--threads",
-            &threads,
-            "--keep",
-            &keep,
-        ];
+        let threads = self.threads.to_string();
+        let words = ["resume", "--headless", "--threads", &threads];
         words.map(String::from).to_vec()
     }
 }

@@ -8,13 +8,13 @@ use serde::Serialize;
 use super::output::{self, CommandResult, Format};
 use crate::files::read_standard_input;
 use crate::lab::experiment;
-use crate::report::{PLAN_LIMITS, Plan};
+use crate::report::{PLAN_LIMITS, Plan, plan_warnings};
 use crate::scenario::{STANDARD_INPUT, Scenario};
 use crate::words::quoted;
 
 /// Validate scenario files and study plans.
 ///
-/// What is odd about a scenario, though it is valid, is a warning. Warnings do not change the
+/// What is odd about a scenario, or one of a plan, though it is valid, is a warning. Warnings do not change the
 /// exit code.
 ///
 /// With --format json, complete scenarios are printed, including defaults: every setting that
@@ -137,6 +137,7 @@ impl Report {
                 self.file
             ));
         }
+        self.warnings = plan_warnings(&plan);
         self.plan = Some(plan);
         Ok(())
     }

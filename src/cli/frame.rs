@@ -14,7 +14,7 @@ use crate::dashboard::{
     App, Effect, FrameFormat, Input, Mode, OffscreenDashboard, ViewContext, ViewId, render,
 };
 use crate::lab::inspection::Archive;
-use crate::lab::{Recording, lasting_experiment};
+use crate::lab::{Liveness, Recording, lasting_experiment};
 
 /// Print one frame of the dashboard of a recorded run.
 ///
@@ -118,11 +118,17 @@ pub(super) fn main(args: &Args) -> CommandResult {
         key_map,
     ))
     .starting_at(start);
-    let mut dashboard = OffscreenDashboard::new(app, Archive::new(experiment, &args.run_dir, None));
+    let archive = Archive::new(experiment, &args.run_dir, None);
+    let bytes = archive.folder_bytes();
+    let mut dashboard = OffscreenDashboard::new(app, archive);
+    dashboard.update(Input::FolderBytes(bytes));
     let Size(columns, rows) = args.size;
     dashboard.update(Input::Resize(columns, rows));
     for event in recording.events {
         dashboard.update(Input::Event(Box::new(event)));
+    }
+    if recording.liveness != Liveness::Computing {
+        dashboard.update(Input::Closed);
     }
     if let Some(sign) = recording.last_sign {
         dashboard.update(Input::LastSign(sign));

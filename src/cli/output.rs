@@ -80,6 +80,13 @@ pub(super) fn warnings(warnings: &[impl Display]) {
     }
 }
 
+/// Writes notes to standard error.
+pub(super) fn notes(notes: &[impl Display]) {
+    for note in notes {
+        message(&format!("note: {note}"));
+    }
+}
+
 /// Writes bytes to standard output as they are; they must not quote input.
 pub(super) fn raw(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();

@@ -6,7 +6,7 @@ use super::args::{ExecutionArgs, ScenarioArgs};
 use super::live;
 use super::output::{self, CommandResult};
 use super::signals::SignalWatcher;
-use crate::lab::{Invocation, LastSign, RunFolder, resume, start};
+use crate::lab::{Invocation, LastSign, RunFolder, resume, resume_at, start};
 
 /// Evolve hierarchies for a scenario.
 ///
@@ -71,6 +71,7 @@ pub(super) fn main(args: Args) -> CommandResult {
     };
     let run = start(scenario, args.seed, &folder, &execution.options(args.force))?;
     output::warnings(&run.warnings);
+    output::notes(&run.notes);
     if !kept.is_empty() {
         let folder = folder.display();
         output::message(&format!("note: kept in {folder}: {}", kept.join(", ")));
@@ -87,7 +88,8 @@ pub(super) fn main(args: Args) -> CommandResult {
 #[command(after_help = "\
 Examples:
   maxq-lab resume runs/environment-3-seed7
-  maxq-lab resume runs/environment-3-seed7 --generations 400        beyond its limit")]
+  maxq-lab resume runs/environment-3-seed7 --generations 400        beyond its limit
+  maxq-lab resume runs/environment-3-seed7 --at 12                  from generation 12 again")]
 pub(super) struct ResumeArgs {
     /// Run folder.
     run_dir: PathBuf,
@@ -95,6 +97,12 @@ pub(super) struct ResumeArgs {
     /// New maximum number of generations.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     generations: Option<u64>,
+
+    /// Resume from the kept state after generation N and compute what came later again.
+    ///
+    /// A state in generations/ can take the place of a damaged checkpoint.json.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    at: Option<u64>,
 
     #[command(flatten)]
     execution: ExecutionArgs,
@@ -117,7 +125,12 @@ pub(super) fn resume_main(args: &ResumeArgs) -> CommandResult {
     }
     let execution = &args.execution;
     let dashboard = execution.dashboard.unless(execution.headless)?;
-    let run = resume(&args.run_dir, args.generations, &execution.options(false))?;
+    let (folder, limit, options) = (&args.run_dir, args.generations, execution.options(false));
+    let run = match args.at {
+        None => resume(folder, limit, &options),
+        Some(at) => resume_at(folder, at, limit, &options),
+    }?;
+    output::notes(&run.notes);
     output::warnings(&run.warnings);
     live::follow(run, dashboard, signals, execution)
 }

@@ -10,9 +10,11 @@ use thiserror::Error;
 
 mod json;
 mod limits;
+mod size;
 
 pub use json::{JsonError, message as json_message, parse_json, stated_format};
 pub use limits::Limits;
+pub use size::{ByteCount, folder_bytes};
 
 /// A file or folder that cannot be used, and why.
 #[derive(Debug, Error)]

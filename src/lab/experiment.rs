@@ -64,6 +64,9 @@ pub trait AnyExperiment: Send + Sync {
         read_tree(text, self.catalogue(), depth)
     }
 
+    /// Returns about how many bytes a saved state takes.
+    fn state_bytes(&self) -> u64;
+
     /// Reads the population in a checkpoint.
     ///
     /// # Errors

@@ -31,7 +31,7 @@ pub const SUMMARY: &str = "summary.json";
 /// Name of the file with the evaluation of the winner, which studies write.
 pub const EVALUATION: &str = "evaluation.json";
 /// Name of the folder of kept checkpoints.
-const GENERATIONS: &str = "generations";
+pub(super) const GENERATIONS: &str = "generations";
 
 /// The files and folders of a run, apart from `run.json` and the lock.
 const OWN: [&str; 7] = [
@@ -244,7 +244,7 @@ impl RunFolder {
     /// Returns the path of the kept checkpoint of a generation.
     #[must_use]
     pub fn generation(&self, generation: u64) -> PathBuf {
-        self.generations().join(format!("{generation:06}.json"))
+        kept_path(&self.path, generation)
     }
 
     /// Writes `run.json`.
@@ -282,6 +282,13 @@ impl RunFolder {
             .map_err(|error| wrong(error.to_string()))?;
         Ok(manifest)
     }
+}
+
+/// Returns the path of the kept checkpoint of a generation of the run in `folder`.
+pub(super) fn kept_path(folder: &Path, generation: u64) -> PathBuf {
+    folder
+        .join(GENERATIONS)
+        .join(format!("{generation:06}.json"))
 }
 
 /// Replaces the file at `path` by a value as JSON that is easy to read.

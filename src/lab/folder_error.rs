@@ -143,6 +143,7 @@ mod tests {
             format: MANIFEST_FORMAT,
             scenario: smoke.with_settings(&settings).unwrap(),
             seed,
+            keep: None,
             started: Invocation::now(1),
             resumed: Vec::new(),
         }

@@ -10,6 +10,7 @@ use std::path::Path;
 use super::checkpoint::{CheckpointHead, LogPosition};
 use super::event::Event;
 use super::folder::{CHECKPOINT, EVENTS, SUMMARY};
+use super::kept::with_way_out;
 use super::log::{LogError, check_prefix, read_event};
 use super::manifest::Manifest;
 use super::outcome::{BestIndividual, Outcome};
@@ -154,7 +155,8 @@ fn described(event: &Event) -> String {
 pub fn check_log(folder: &Path, manifest: &Manifest) -> Result<(), FileError> {
     let (checkpoint, events) = (folder.join(CHECKPOINT), folder.join(EVENTS));
     let head = CheckpointHead::read(&checkpoint);
-    let head = head.map_err(|error| FileError::new(&checkpoint, error))?;
+    let way_out = |error| with_way_out(folder, manifest, error);
+    let head = head.map_err(|error| way_out(FileError::new(&checkpoint, error)))?;
     if let Some(head) = &head {
         let origin = head.check_origin(&manifest.scenario, manifest.seed);
         origin.map_err(|message| FileError::new(&checkpoint, message))?;
@@ -166,7 +168,10 @@ pub fn check_log(folder: &Path, manifest: &Manifest) -> Result<(), FileError> {
     let position = head
         .as_ref()
         .map_or(LogPosition::default(), |head| head.events);
-    let tail = Tail::read(&events, position).map_err(|error| FileError::new(&events, error))?;
+    let tail = Tail::read(&events, position).map_err(|error| match error {
+        LogError::NotOfCheckpoint { .. } => way_out(FileError::new(&events, error)),
+        error => FileError::new(&events, error),
+    })?;
     // A process that resumes a run that was over writes the end of the log anew.
     let Some(outcome) = outcome.filter(|_| !folder.join(PULSE_FILE).exists()) else {
         return Ok(());

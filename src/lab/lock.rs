@@ -98,11 +98,7 @@ impl RunLock {
     pub(super) fn warning(&self) -> Option<String> {
         match self {
             Self::System { .. } => None,
-            Self::Owner(_) => Some(format!(
-                "files cannot be locked here; {OWNER} guards the folder instead, and after a crash \
-                 another machine waits {} seconds before it takes the run over",
-                STALE.as_secs()
-            )),
+            Self::Owner(_) => Some(unlocked()),
         }
     }
 
@@ -121,6 +117,24 @@ impl RunLock {
             _ => Ok(()),
         }
     }
+}
+
+/// Returns what a user should know if files in `folder` cannot be locked.
+#[must_use]
+pub fn lock_warning(folder: &Path) -> Option<String> {
+    let probe = tempfile::Builder::new().prefix(WRITING).tempfile_in(folder);
+    match probe.ok()?.as_file().try_lock() {
+        Err(TryLockError::Error(error)) if cannot_lock(&error) => Some(unlocked()),
+        _ => None,
+    }
+}
+
+fn unlocked() -> String {
+    format!(
+        "files cannot be locked here; {OWNER} guards a run folder instead, and after a crash \
+         another machine waits {} seconds before it takes a run over",
+        STALE.as_secs()
+    )
 }
 
 /// Returns whether an error of locking says that files cannot be locked here.

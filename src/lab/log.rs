@@ -1,5 +1,6 @@
 //! `events.jsonl`: the recorded events, one a line, append-only.
 
+use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -138,6 +139,23 @@ pub(super) fn check_prefix(
         return Err(mismatch(format!("CRC-32 {crc32:08x} of these bytes")));
     }
     Ok(last)
+}
+
+/// Returns the CRC-32 of the bytes up to the end of each line, by their number.
+pub(super) fn checksums(reader: &mut impl BufRead) -> io::Result<BTreeMap<u64, u32>> {
+    let mut hasher = crc32fast::Hasher::new();
+    let (mut line, mut bytes) = (Vec::new(), 0);
+    let mut checksums = BTreeMap::from([(0, hasher.clone().finalize())]);
+    loop {
+        line.clear();
+        let read = reader.take(LIMITS.bytes).read_until(b'\n', &mut line)?;
+        if read == 0 {
+            return Ok(checksums);
+        }
+        hasher.update(&line);
+        bytes += read as u64;
+        checksums.insert(bytes, hasher.clone().finalize());
+    }
 }
 
 /// Reads the events of a log in order. An incomplete last line is ignored: the process died while

@@ -5,6 +5,7 @@ use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
+use super::keep::Keep;
 use crate::scenario::Scenario;
 use crate::words::shell_word;
 
@@ -21,6 +22,9 @@ pub struct Manifest {
     pub scenario: Scenario,
     /// Seed of all random streams.
     pub seed: u64,
+    /// The generations whose checkpoints are kept; `None` means thinned.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep: Option<Keep>,
     /// How the run was started.
     pub started: Invocation,
     /// How it was resumed, once for each time.

@@ -5,6 +5,7 @@
 //! second: a crash of the machine loses what came later. The events before a checkpoint are
 //! synced before the checkpoint.
 
+use std::fs;
 use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -18,6 +19,7 @@ use super::controls::Controls;
 use super::event::Event;
 use super::folder::RunFolder;
 use super::keep::Keep;
+use super::kept::kept_generations;
 use super::last_sign::forget_error;
 use super::log::Log;
 use crate::evolution::{EvolutionState, GenerationRecord};
@@ -124,7 +126,10 @@ impl Recorder<'_> {
                 self.log.append(&event)?;
                 return Ok(None);
             }
-            Message::State(state) => state,
+            Message::State(state) => {
+                self.thin(state.generation);
+                state
+            }
             Message::Generation(record, state) => {
                 check_finite(&state)?;
                 if !record.is_finite() {
@@ -138,8 +143,12 @@ impl Recorder<'_> {
         let position = self.log.position();
         let pending = Pending { state, position };
         if self.keeps(&pending.state) {
-            let path = self.folder.generation(pending.state.generation);
+            let generation = pending.state.generation;
+            let path = self.folder.generation(generation);
             write_in_one_step(&path, &self.bytes(&pending)?)?;
+            for dropped in self.keep.dropped_at(generation) {
+                self.forget(dropped);
+            }
         }
         Ok(Some(pending))
     }
@@ -165,7 +174,24 @@ impl Recorder<'_> {
     }
 
     fn keeps(&self, state: &EvolutionState) -> bool {
-        state.generation > 0 && self.keep.keeps(state.generation)
+        let generation = state.generation;
+        generation > 0 && self.keep.keeps(generation, generation)
+    }
+
+    /// Removes the kept states of a resumed run that thinning no longer keeps.
+    fn thin(&self, latest: u64) {
+        if self.keep != Keep::Thinned {
+            return;
+        }
+        let kept = kept_generations(self.folder.path()).into_iter();
+        for dropped in kept.filter(|&kept| !self.keep.keeps(kept, latest)) {
+            self.forget(dropped);
+        }
+    }
+
+    /// Removes a kept state. One that cannot be removed stays.
+    fn forget(&self, generation: u64) {
+        let _stays = fs::remove_file(self.folder.generation(generation));
     }
 
     fn bytes(&self, pending: &Pending) -> Result<Vec<u8>, RecordError> {

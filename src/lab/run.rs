@@ -9,17 +9,19 @@ use crossbeam_channel::Receiver;
 use super::checkpoint::Checkpoint;
 use super::controls::Controls;
 use super::event::Event;
+use super::experiment::AnyExperiment;
 use super::folder::RunFolder;
 use super::folder_error::FolderError;
 use super::keep::Keep;
-use super::log::{Log, read_events};
+use super::kept::{go_back, kept_generations, ranges, with_way_out};
+use super::log::{Log, LogError, read_events};
 use super::manifest::{Invocation, MANIFEST_FORMAT, Manifest};
 use super::outcome::Outcome;
 use super::run_error::RunError;
 use super::work::Work;
 use super::world_experiment::experiment;
 use crate::evolution::{Workers, processors};
-use crate::files::FileError;
+use crate::files::{ByteCount, FileError};
 use crate::scenario::{PrimitiveLearning, Scenario};
 
 /// How a run is computed and recorded. No option changes its result.
@@ -27,8 +29,9 @@ use crate::scenario::{PrimitiveLearning, Scenario};
 pub struct RunOptions {
     /// Computing threads; 0 means one for each processor.
     pub threads: usize,
-    /// The generations whose checkpoints are kept.
-    pub keep: Keep,
+    /// The generations whose checkpoints are kept; `None` means as when the run was started, and
+    /// [`Keep::Thinned`] in a new run.
+    pub keep: Option<Keep>,
     /// Whether an existing run in the folder is replaced.
     pub force: bool,
 }
@@ -44,6 +47,8 @@ pub struct Run {
     pub scenario: Scenario,
     /// What is odd about the scenario or the folder, each with its place.
     pub warnings: Vec<String>,
+    /// What a user should know of how it was started or resumed.
+    pub notes: Vec<String>,
     /// Its seed.
     pub seed: u64,
     /// Its folder.
@@ -91,6 +96,7 @@ pub fn start(
         format: MANIFEST_FORMAT,
         scenario: scenario.clone(),
         seed,
+        keep: options.keep.filter(|&keep| keep != Keep::default()),
         started: Invocation::now(workers.threads()),
         resumed: Vec::new(),
     };
@@ -104,8 +110,8 @@ pub fn start(
         seed,
         place,
         workers,
-        keep: options.keep,
-        checkpoint: None,
+        keep: options.keep.unwrap_or_default(),
+        from: None,
     })
 }
 
@@ -119,14 +125,44 @@ pub fn resume(
     generations: Option<u64>,
     options: &RunOptions,
 ) -> Result<Run, RunError> {
+    resume_from(path, None, generations, options)
+}
+
+/// Resumes the run in `path` from the kept state after generation `at`: what came later is dropped
+/// and computed again. Otherwise as [`resume`].
+///
+/// # Errors
+/// When the state is not kept or is damaged, and as [`resume`].
+pub fn resume_at(
+    path: &Path,
+    at: u64,
+    generations: Option<u64>,
+    options: &RunOptions,
+) -> Result<Run, RunError> {
+    resume_from(path, Some(at), generations, options)
+}
+
+fn resume_from(
+    path: &Path,
+    at: Option<u64>,
+    generations: Option<u64>,
+    options: &RunOptions,
+) -> Result<Run, RunError> {
     let folder = RunFolder::open(path)?;
     let mut manifest = RunFolder::read_manifest(path)?;
-    let file = folder.checkpoint();
-    let checkpoint = Checkpoint::read(&file).map_err(|error| FileError::new(&file, error))?;
+    let file = at.map_or_else(|| folder.checkpoint(), |at| folder.generation(at));
+    let checkpoint = Checkpoint::read(&file)
+        .map_err(|error| with_way_out(path, &manifest, FileError::new(&file, error)))?;
+    if let (Some(found), None) = (at, &checkpoint) {
+        let kept = ranges(&kept_generations(path));
+        return Err(RunError::At { found, kept });
+    }
     if let Some(checkpoint) = &checkpoint {
-        checkpoint
-            .check_origin(&manifest.scenario, manifest.seed)
-            .map_err(|message| FolderError::from(FileError::new(folder.manifest(), message)))?;
+        let origin = checkpoint.check_origin(&manifest.scenario, manifest.seed);
+        origin.map_err(|message| match at {
+            None => FileError::new(folder.manifest(), message),
+            Some(_) => FileError::new(&file, format!("is not of this run: {message}")),
+        })?;
     }
     // The limit is written to run.json, so that it survives a crash before the next checkpoint.
     if let Some(limit) = generations {
@@ -141,6 +177,8 @@ pub fn resume(
         }
         manifest.scenario.evolution.generation_limit = limit;
     }
+    manifest.keep = options.keep.or(manifest.keep);
+    let keep = manifest.keep.unwrap_or_default();
     let scenario = manifest.scenario.clone();
     let workers = workers(&scenario, options)?;
     manifest.resumed.push(Invocation::now(workers.threads()));
@@ -152,8 +190,12 @@ pub fn resume(
             manifest: Box::new(manifest),
         },
         workers,
-        keep: options.keep,
-        checkpoint,
+        keep,
+        from: checkpoint.map(|checkpoint| Saved {
+            checkpoint,
+            file,
+            at,
+        }),
     })
 }
 
@@ -206,7 +248,16 @@ struct Preparation {
     place: Place,
     workers: Workers,
     keep: Keep,
-    checkpoint: Option<Checkpoint>,
+    /// What a resumed run starts from.
+    from: Option<Saved>,
+}
+
+/// A saved state from which a run is resumed.
+struct Saved {
+    checkpoint: Checkpoint,
+    file: PathBuf,
+    /// Its generation, if it is a kept one that was asked for.
+    at: Option<u64>,
 }
 
 /// Checks everything that can be wrong, then starts the evolution thread.
@@ -217,34 +268,30 @@ fn begin(preparation: Preparation) -> Result<Run, RunError> {
         place,
         workers,
         keep,
-        checkpoint,
+        from,
     } = preparation;
     let experiment = experiment(scenario.clone(), seed)?;
     let odd = experiment.warnings().into_iter();
     let mut warnings: Vec<_> = odd.map(|odd| format!("{}: {odd}", scenario.name)).collect();
+    let cost = (keep == Keep::All).then(|| cost(&*experiment));
     let (controls, events) = Controls::new();
     let (folder, manifest) = place.folder()?;
     let path = folder.path().to_owned();
     let of_folder = folder.warning();
     warnings.extend(of_folder.map(|odd| format!("{}: {odd}", path.display())));
-    let state = checkpoint
-        .as_ref()
-        .map(|checkpoint| experiment.population(checkpoint));
-    let state = state
-        .transpose()
-        .map_err(|error| FileError::new(folder.checkpoint(), error))?;
-    let file = folder.events();
-    let (log, past) = match &checkpoint {
-        Some(checkpoint) => {
-            let log = Log::reopen(&file, checkpoint.events);
-            let log = log.map_err(|error| FileError::new(&file, error))?;
-            (log, read_events(&file)?)
-        }
-        None => (
-            Log::create(&file).map_err(|error| FileError::new(&file, error))?,
-            Vec::new(),
-        ),
+    let way_out = |error: FileError| match &manifest {
+        Some(manifest) => with_way_out(&path, manifest, error),
+        None => error,
     };
+    let (state, dropped) = match &from {
+        Some(saved) => {
+            let state = experiment.population(&saved.checkpoint);
+            let state = state.map_err(|error| way_out(FileError::new(&saved.file, error)))?;
+            (Some(state), saved.go_back(&folder).map_err(&way_out)?)
+        }
+        None => (None, None),
+    };
+    let (log, past) = open_log(&folder, from.as_ref()).map_err(&way_out)?;
     // Written last, so that a refused resume changes nothing.
     if let Some(manifest) = manifest {
         folder.write_manifest(&manifest)?;
@@ -262,13 +309,52 @@ fn begin(preparation: Preparation) -> Result<Run, RunError> {
         .name(String::from("evolution"))
         .spawn(move || experiment.run(work))
         .map_err(|error| RunError::Threads(error.to_string()))?;
+    let notes = dropped.map(|dropped| format!("{}: {dropped}", path.display()));
+    let notes = notes.into_iter().chain(cost);
     Ok(Run {
         events,
         controls,
         scenario,
         warnings,
+        notes: notes.collect(),
         seed,
         folder: path,
         thread,
     })
+}
+
+/// Tells what keeping all generations costs.
+fn cost(experiment: &dyn AnyExperiment) -> String {
+    let generations = experiment.scenario().evolution.generation_limit;
+    let bytes = experiment.state_bytes();
+    format!(
+        "keeping all generations takes about {} for {generations} generations, {} each; more if \
+         hierarchies grow",
+        ByteCount(bytes.saturating_mul(generations)),
+        ByteCount(bytes)
+    )
+}
+
+/// Opens the log of a run for its next event, and returns the events so far.
+fn open_log(folder: &RunFolder, from: Option<&Saved>) -> Result<(Log, Vec<Event>), FileError> {
+    let file = folder.events();
+    let log = match from {
+        Some(saved) => Log::reopen(&file, saved.checkpoint.events),
+        None => Log::create(&file).map_err(LogError::from),
+    };
+    let log = log.map_err(|error| FileError::new(&file, error))?;
+    let past = match from {
+        Some(_) => read_events(&file)?,
+        None => Vec::new(),
+    };
+    Ok((log, past))
+}
+
+impl Saved {
+    /// Drops what came after a state that was asked for; returns what was dropped, in words.
+    fn go_back(&self, folder: &RunFolder) -> Result<Option<String>, FileError> {
+        let position = self.checkpoint.events;
+        let dropped = self.at.map(|at| go_back(folder, at, position));
+        dropped.transpose()
+    }
 }

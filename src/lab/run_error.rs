@@ -38,6 +38,16 @@ pub enum RunError {
         /// Generations that the run has.
         lived: u64,
     },
+    /// The state that a run was to be resumed from is not kept.
+    #[error(
+        "--at: found {found}; allowed: a generation whose state is kept in generations/ ({kept})"
+    )]
+    At {
+        /// The generation asked for.
+        found: u64,
+        /// The kept generations, in words.
+        kept: String,
+    },
     /// The operating system refuses to start a thread.
     #[error("cannot start threads: {0}")]
     Threads(String),

@@ -17,7 +17,8 @@ use super::work::Work;
 use crate::evolution::{Evolution, EvolutionState, Experiment, Workers};
 use crate::hierarchy::Tree;
 use crate::learning::{
-    Encoder, Gate, Policy, PolicySamples, PrimitiveSet, SelectionProbabilities, Stopped,
+    CompositeValues, Encoder, Gate, Policy, PolicySamples, PrimitiveSet, SelectionProbabilities,
+    Stopped,
 };
 use crate::random::{Purpose, stream};
 use crate::rules::Problem;
@@ -65,6 +66,10 @@ pub fn any_experiment<W: Scenic + 'static>(
         experiment,
     })
 }
+
+/// Bytes of a learned number in a saved state, on average. The primitive subtasks and all else in
+/// it take a few hundredths of the whole.
+const NUMBER_BYTES: u64 = 11;
 
 struct Ready {
     scenario: Scenario,
@@ -127,6 +132,17 @@ impl<W: Scenic + 'static> AnyExperiment for WorldExperiment<W> {
 
     fn seed(&self) -> u64 {
         self.seed
+    }
+
+    fn state_bytes(&self) -> u64 {
+        let of_tree = |tree: &Tree| {
+            let hierarchy = self.experiment.untrained(tree.clone());
+            let composites = hierarchy.values().iter().flatten();
+            let vectors = composites.flat_map(CompositeValues::vectors).flatten();
+            vectors.map(|vector| vector.len()).sum::<usize>()
+        };
+        let numbers: usize = self.experiment.initial_population.iter().map(of_tree).sum();
+        numbers as u64 * NUMBER_BYTES
     }
 
     fn catalogue(&self) -> &Catalogue {

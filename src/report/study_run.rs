@@ -113,7 +113,7 @@ impl StudyRun<'_> {
     fn evolve(&self, folder: &Path, planned: &PlannedRun) -> Result<(), StudyRunError> {
         let options = RunOptions {
             threads: 1,
-            keep: self.keep,
+            keep: Some(self.keep),
             force: false,
         };
         let run = if folder.join(MANIFEST).is_file() {

@@ -3,10 +3,10 @@
 use maxq_lab::dashboard::keys::Action;
 use maxq_lab::dashboard::{Effect, Input, Mode, ShownGeneration, ViewId};
 use maxq_lab::hierarchy::Glyphs::Unicode;
-use maxq_lab::lab::Event;
+use maxq_lab::lab::{Event, Keep};
 
 use super::common;
-use super::recorded::{Screen, foraging};
+use super::recorded::{Recorded, Screen, foraging};
 
 fn screen() -> Screen {
     foraging().screen("dark", Unicode, (120, 40))
@@ -50,6 +50,42 @@ fn every_view_draws_at_every_size() {
             }
         }
     }
+}
+
+/// Time travel to a generation whose individuals were not kept.
+#[test]
+fn the_nearest_kept_generation_stands_in_and_says_so() {
+    let run = Recorded::keeping(&common::short(&[]), Keep::Every(3));
+    let mut screen = run.screen("dark", Unicode, (120, 40));
+    let subject = |screen: &Screen| screen.0.app().context().player.subject().unwrap();
+    for (wanted, stands_in) in [(2, 3), (4, 3), (5, 6), (3, 3)] {
+        screen.0.travel_to(wanted);
+        assert_eq!(generation(&screen), wanted);
+        assert_eq!(subject(&screen).generation, stands_in);
+        let context = screen.0.app().context();
+        assert!(context.player.individual().is_some() && context.player.load_error().is_none());
+        let text =
+            format!("generation {wanted} were not kept; shown: the nearest kept, of generation");
+        let said = context.log().iter().any(|(said, _)| said.contains(&text));
+        assert_eq!(said, wanted != stands_in);
+    }
+    // Keys go through all generations, not only through the kept ones.
+    screen.press("[ [");
+    assert_eq!(generation(&screen), 1);
+}
+
+/// The size of the run folder is part of the status.
+#[test]
+fn the_size_of_the_folder_is_shown() {
+    let mut screen = screen();
+    screen.press("7");
+    assert!(!screen.text().contains("folder size"));
+    screen.0.update(Input::FolderBytes(39_400_000));
+    assert!(
+        screen.text().contains("folder size 39 MB"),
+        "{}",
+        screen.text()
+    );
 }
 
 #[test]

@@ -9,7 +9,7 @@ use maxq_lab::dashboard::look::{Look, Signs, Theme};
 use maxq_lab::dashboard::{App, Effect, Input, Mode, OffscreenDashboard, ViewContext};
 use maxq_lab::hierarchy::Glyphs;
 use maxq_lab::lab::inspection::{Archive, Start};
-use maxq_lab::lab::{AnyExperiment, Event, Recording, lasting_experiment};
+use maxq_lab::lab::{AnyExperiment, Event, Keep, Recording, RunOptions, lasting_experiment};
 use maxq_lab::scenario::Scenario;
 use tempfile::TempDir;
 
@@ -26,9 +26,18 @@ pub struct Recorded {
 impl Recorded {
     /// Records a run of this scenario with seed 1.
     pub fn new(scenario: &Scenario) -> Self {
+        Self::keeping(scenario, Keep::All)
+    }
+
+    /// Records such a run that keeps the individuals of some generations only.
+    pub fn keeping(scenario: &Scenario, keep: Keep) -> Self {
         let parent = tempfile::tempdir().unwrap();
         let folder = parent.path().join("run");
-        common::run_in(&folder, scenario, 1, &common::threads(1));
+        let options = RunOptions {
+            keep: Some(keep),
+            ..common::threads(1)
+        };
+        common::run_in(&folder, scenario, 1, &options);
         Self {
             experiment: lasting_experiment(scenario.clone(), 1).unwrap(),
             events: Recording::read(&folder).unwrap().events,

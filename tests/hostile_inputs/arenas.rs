@@ -1,5 +1,7 @@
 //! Arenas whose numbers are valid and whose geometry is not: the task cannot be done, or is odd.
 
+use std::fs;
+
 use maxq_lab::scenario::EMBEDDED;
 
 use super::common::{SHORT, output, program, stderr, stdout};
@@ -177,6 +179,63 @@ fn a_robot_too_small_for_the_check_is_a_warning() {
         &said,
         &["world.foraging.robot.radius_mm: found 1, so small that ways"],
     );
+}
+
+#[test]
+fn studies_and_evaluations_warn_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = folder.path().join("plan.json");
+    let twins = "world.foraging.arena.batteries_mm=[[500,500],[500,500]]";
+    let text = serde_json::json!({
+        "format": 1,
+        "name": "twins",
+        "description": "Two batteries in one place.",
+        "scenarios": ["smoke"],
+        "seeds": "1",
+        "arms": [
+            { "name": "one", "base": "evolved", "settings": [twins] },
+            { "name": "two", "base": "random_selection", "settings": [twins] },
+            { "name": "three", "base": "evolved", "settings": [] },
+        ],
+    });
+    fs::write(&plan, text.to_string()).unwrap();
+    let study = folder.path().join("study");
+    let evaluate = [
+        "evaluate",
+        "smoke",
+        "--tree",
+        "(Root Wander ApproachBattery ApproachNest)",
+    ];
+    let short = [
+        "--warmup",
+        "0",
+        "--trials",
+        "1",
+        "--repeats",
+        "1",
+        "--set",
+        twins,
+    ];
+    let commands = [
+        program().arg("check").arg(&plan),
+        program()
+            .args(["study", "commands"])
+            .arg(&plan)
+            .arg("--out")
+            .arg(&study),
+        program().args(evaluate).args(short),
+    ]
+    .map(output);
+    for done in commands {
+        let said = stderr(&done);
+        assert!(done.status.success(), "{said}");
+        assert_eq!(
+            said.matches("smoke: world.foraging.arena").count(),
+            1,
+            "{said}"
+        );
+        assert!(said.starts_with("warning: "), "{said}");
+    }
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn invalid_arguments_are_rejected_with_code_2() {
         ),
         (
             &["run", "smoke", "--keep", "0"],
-            &["found \"0\"; allowed: all, none, or a number"],
+            &["found \"0\"; allowed: thinned, all, none, or a number"],
         ),
         (
             &["run", "smoke", "--keep", "some"],

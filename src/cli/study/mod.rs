@@ -13,9 +13,9 @@ use clap::Subcommand;
 
 use super::args::OnHangup;
 use super::dashboard::DashboardArgs;
-use super::output::{CommandResult, Failure};
-use crate::lab::Keep;
-use crate::report::{Arm, Base, Numbers, Plan, Study};
+use super::output::{self, CommandResult, Failure};
+use crate::lab::{Keep, lock_warning};
+use crate::report::{Arm, Base, Numbers, Plan, Study, plan_warnings};
 use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Embedded};
 use crate::words::quoted;
 
@@ -66,8 +66,9 @@ pub(super) struct Args {
     #[arg(long, short, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     jobs: u16,
 
-    /// Which checkpoints to keep of every run: all, none, or one every N generations.
-    #[arg(long, value_name = "all|none|N", default_value = "none")]
+    /// Which states to keep of every run, for looking at past generations: thinned (the last 64,
+    /// then fewer and fewer), all, none, or one every N generations.
+    #[arg(long, value_name = "thinned|all|none|N", default_value = "none")]
     keep: Keep,
 
     /// Show a progress bar instead of the table of runs.
@@ -108,7 +109,13 @@ impl StudyArgs {
     /// The study; creates its folder if it does not exist.
     pub(super) fn create(&self) -> Result<Study, Failure> {
         let Study { plan, folder } = self.planned()?;
-        Ok(Study::create(plan, &folder)?)
+        let warnings = plan_warnings(&plan);
+        let study = Study::create(plan, &folder)?;
+        output::warnings(&warnings);
+        let unlocked = lock_warning(&study.folder);
+        let unlocked = unlocked.map(|odd| format!("{}: {odd}", study.folder.display()));
+        output::warnings(unlocked.as_slice());
+        Ok(study)
     }
 
     /// The study as it would be created; creates nothing.

@@ -13,7 +13,10 @@ use crate::cli::live::{PATIENCE, continues, end_within};
 use crate::cli::output::{self, CommandResult, Failure};
 use crate::cli::signals::{SignalWatcher, Termination};
 use crate::dashboard::session::Exit;
-use crate::report::{RunId, RunState, Study, StudyControls, run_study, status};
+use crate::lab::Keep;
+use crate::report::{
+    RunId, RunState, Study, StudyControls, bytes_of_all_generations, run_study, status,
+};
 use crate::words::shell_path;
 
 /// Runs `maxq-lab study`.
@@ -21,6 +24,13 @@ pub(super) fn main(args: &Args) -> CommandResult {
     // Mistakes are reported before anything is created.
     let runs = selected(&args.study.planned()?, &args.only)?;
     let study = args.study.create()?;
+    if args.keep == Keep::All {
+        output::message(&format!(
+            "note: keeping all generations takes up to about {} for all runs, more if hierarchies \
+             grow",
+            bytes_of_all_generations(&study.plan)
+        ));
+    }
     let signals = SignalWatcher::start()?;
     let dashboard = args.dashboard.unless(args.headless)?;
     let jobs = useful_threads(args.jobs);

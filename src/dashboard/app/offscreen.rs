@@ -55,7 +55,7 @@ impl OffscreenDashboard {
         for effect in effects {
             match effect {
                 Effect::Load { generation } => {
-                    let state = self.archive.generation(generation);
+                    let state = self.archive.nearest(generation);
                     let state = state.map_err(|error| error.to_string());
                     left.extend(self.update(Input::Population { generation, state }));
                 }

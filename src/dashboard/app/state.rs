@@ -125,7 +125,13 @@ impl App {
             Input::Tick(elapsed) => self.tick(elapsed),
             Input::Population { generation, state } => {
                 self.dirty = true;
+                if let Ok(state) = &state {
+                    self.context.note_stand_in(generation, state.generation);
+                }
                 self.context.player.receive(generation, state);
+            }
+            Input::FolderBytes(bytes) => {
+                self.dirty |= self.context.folder_bytes.replace(bytes) != Some(bytes);
             }
             Input::Message(text) => {
                 self.dirty = true;

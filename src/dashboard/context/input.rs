@@ -25,11 +25,14 @@ pub enum Input {
     LastSign(LastSign),
     /// This much time has passed since the last tick.
     Tick(Duration),
+    /// The size of the run folder.
+    FolderBytes(u64),
     /// The population after a generation, or why it could not be loaded.
     Population {
         /// Number of the generation.
         generation: u64,
-        /// The individuals with everything that they have learned, or the error message.
+        /// The individuals with everything that they have learned, or the error message. If the
+        /// generation was not kept, those of the nearest one that was.
         state: Result<Arc<EvolutionState>, String>,
     },
     /// The driver has a message for the user: an export was written, a file could not be read.

@@ -63,6 +63,8 @@ pub struct RolloutPlayer {
     /// The generation that is being loaded, and the last generation that could not be loaded.
     requested: Option<u64>,
     failed: Option<(u64, String)>,
+    /// The generation that was asked for when the population of another was loaded.
+    stands_for: Option<u64>,
     subject: Option<Subject>,
     rollout: Option<Box<dyn Rollout>>,
     /// Recorded steps, the latest first.
@@ -84,6 +86,7 @@ impl RolloutPlayer {
             population: None,
             requested: None,
             failed: None,
+            stands_for: None,
             subject: None,
             rollout: None,
             recorded: VecDeque::new(),
@@ -269,6 +272,7 @@ impl RolloutPlayer {
         match state {
             Ok(state) => {
                 self.failed = None;
+                self.stands_for = Some(generation).filter(|_| state.generation != generation);
                 self.population = Some(state);
             }
             Err(why) => self.failed = Some((generation, why)),
@@ -284,7 +288,7 @@ impl RolloutPlayer {
         wanted: Option<Subject>,
         by_choice: bool,
     ) -> Option<u64> {
-        let wanted = wanted?;
+        let wanted = self.available(wanted?);
         let here = self.subject;
         if here == Some(wanted) {
             return None;
@@ -314,6 +318,24 @@ impl RolloutPlayer {
             self.shown_for = Duration::ZERO;
         }
         None
+    }
+
+    /// Returns the individual to show for the wanted one: if the loaded population stands in for
+    /// that of its generation, the one of the same id, or else the best.
+    fn available(&self, wanted: Subject) -> Subject {
+        let stands_in = self.stands_for == Some(wanted.generation);
+        let Some(state) = self.population.as_ref().filter(|_| stands_in) else {
+            return wanted;
+        };
+        let is_there = InspectedIndividual::with_id(state, wanted.id).is_some();
+        let best = state.individuals.first();
+        Subject {
+            generation: state.generation,
+            id: match best {
+                Some(best) if !is_there => best.id,
+                _ => wanted.id,
+            },
+        }
     }
 
     fn gives_way(&self) -> bool {

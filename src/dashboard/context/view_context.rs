@@ -79,6 +79,8 @@ pub struct ViewContext {
     pub experiment: &'static dyn AnyExperiment,
     /// The run folder, as shown to the user.
     pub folder: String,
+    /// The size of the run folder in bytes, once it was measured.
+    pub folder_bytes: Option<u64>,
     /// The settings in which the scenario differs from the built-in scenario of the same name.
     pub changed: Vec<String>,
     /// The rollout of the inspected individual.
@@ -133,6 +135,7 @@ impl ViewContext {
         Self {
             experiment,
             folder,
+            folder_bytes: None,
             changed: changed.iter().map(ToString::to_string).collect(),
             player: RolloutPlayer::new(experiment),
             mode,
@@ -406,6 +409,17 @@ impl ViewContext {
             && self.chosen == Chosen::Best
             && self.time == ShownGeneration::Latest
             && !self.frozen()
+    }
+
+    /// Tells the user if the individuals of `generation` were not kept, and those of another stand
+    /// in for them.
+    pub(in crate::dashboard) fn note_stand_in(&mut self, generation: u64, found: u64) {
+        if generation != found {
+            self.show_message(format!(
+                "the individuals of generation {generation} were not kept; shown: the nearest \
+                 kept, of generation {found}"
+            ));
+        }
     }
 
     /// Shows a message to the user and adds it to the log.

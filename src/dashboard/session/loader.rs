@@ -1,44 +1,43 @@
-//! A thread that loads the populations of a run, so that keys need not wait for a file on a
-//! slow share.
+//! A thread that loads the populations of a run and measures its folder, so that keys need not wait
+//! for a file on a slow share.
 
 use std::io;
-use std::sync::Arc;
 use std::thread;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
-use crate::evolution::EvolutionState;
+use crate::dashboard::context::Input;
 use crate::lab::inspection::Archive;
 
-/// The population after a generation, or why it could not be loaded.
-#[derive(Debug)]
-pub(super) struct Loaded {
-    pub(super) generation: u64,
-    pub(super) state: Result<Arc<EvolutionState>, String>,
+/// What the loader is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wanted {
+    /// The population after this generation.
+    Population(u64),
+    /// The size of the run folder.
+    FolderSize,
 }
 
 /// Loads populations until it is dropped.
 pub(super) struct Loader {
-    /// The loaded populations.
-    pub(super) loaded: Receiver<Loaded>,
-    wanted: Sender<u64>,
+    /// What was loaded.
+    pub(super) loaded: Receiver<Input>,
+    wanted: Sender<Wanted>,
 }
 
 impl Loader {
     pub(super) fn start(mut archive: Archive) -> io::Result<Self> {
-        let (wanted, asked) = unbounded::<u64>();
+        let (wanted, asked) = unbounded();
         let (sender, loaded) = unbounded();
         thread::Builder::new()
             .name(String::from("populations"))
             .spawn(move || {
-                for generation in &asked {
-                    // Only the last request counts: the user has already moved past the earlier
-                    // ones.
-                    let generation = asked.try_iter().last().unwrap_or(generation);
-                    let state = archive.generation(generation);
-                    let state = state.map_err(|error| error.to_string());
-                    if sender.send(Loaded { generation, state }).is_err() {
-                        return;
+                for first in &asked {
+                    let all: Vec<_> = std::iter::once(first).chain(asked.try_iter()).collect();
+                    for input in answers(&all, &mut archive) {
+                        if sender.send(input).is_err() {
+                            return;
+                        }
                     }
                 }
             })?;
@@ -47,7 +46,35 @@ impl Loader {
 
     /// Requests the population after a generation.
     pub(super) fn load(&self, generation: u64) {
-        // The thread cannot end before `self`, so sending cannot fail.
-        let _sent = self.wanted.send(generation);
+        self.ask(Wanted::Population(generation));
     }
+
+    /// Requests the size of the run folder.
+    pub(super) fn measure(&self) {
+        self.ask(Wanted::FolderSize);
+    }
+
+    fn ask(&self, wanted: Wanted) {
+        // The thread cannot end before `self`, so sending cannot fail.
+        let _sent = self.wanted.send(wanted);
+    }
+}
+
+/// Answers requests. Of several populations only the last counts: the user has already moved past
+/// the earlier ones.
+fn answers(wanted: &[Wanted], archive: &mut Archive) -> Vec<Input> {
+    let population = wanted.iter().rev().find_map(|wanted| match wanted {
+        Wanted::Population(generation) => Some(*generation),
+        Wanted::FolderSize => None,
+    });
+    let population = population.map(|generation| Input::Population {
+        generation,
+        state: archive
+            .nearest(generation)
+            .map_err(|error| error.to_string()),
+    });
+    let size = wanted
+        .contains(&Wanted::FolderSize)
+        .then(|| Input::FolderBytes(archive.folder_bytes()));
+    population.into_iter().chain(size).collect()
 }

@@ -27,7 +27,7 @@ use super::keys::Key;
 use super::terminal::{Job, Terminal};
 use crate::lab::inspection::Archive;
 use crate::lab::{Liveness, Manifest, News, lasting_experiment};
-use loader::{Loaded, Loader};
+use loader::Loader;
 use wait::{WakeUp, wait};
 
 /// Interval at which a background program checks whether it is in the foreground again.
@@ -36,6 +36,9 @@ const BACKGROUND: Duration = Duration::from_millis(250);
 /// Interval at which news of the run is read. Nobody can read faster generations, and every
 /// changed number costs bytes.
 const NEWS: Duration = Duration::from_millis(200);
+
+/// Interval at which the run folder is measured.
+const MEASURE: Duration = Duration::from_secs(10);
 
 /// Shortest time between two frames, which limits redraws for a repeating key.
 const GAP: Duration = Duration::from_millis(25);
@@ -53,8 +56,9 @@ pub struct Session<'s> {
     /// The run folder.
     folder: &'s Path,
     ticked: Instant,
-    /// When news was last read, and when a frame was last drawn.
+    /// When news was last read, when the folder was last measured, and when a frame was last drawn.
     read: Option<Instant>,
+    measured: Option<Instant>,
     drawn: Option<Instant>,
     /// Whether a change may not have been drawn yet.
     due: bool,
@@ -83,6 +87,7 @@ impl<'s> Session<'s> {
             folder,
             ticked: Instant::now(),
             read: None,
+            measured: None,
             drawn: None,
             due: true,
         })
@@ -150,6 +155,13 @@ impl<'s> Session<'s> {
             && let Some(exit) = self.read_news()
         {
             return Some(exit);
+        }
+        if self
+            .measured
+            .is_none_or(|measured| measured.elapsed() >= MEASURE)
+        {
+            self.measured = Some(Instant::now());
+            self.loader.measure();
         }
         let effects = self.app.update(Input::Tick(elapsed));
         if let Some(exit) = self.run_effects(effects) {
@@ -241,7 +253,7 @@ impl<'s> Session<'s> {
         GAP.min(self.period).saturating_sub(since)
     }
 
-    fn wait(&self, signals: &Receiver<i32>) -> WakeUp<Loaded> {
+    fn wait(&self, signals: &Receiver<i32>) -> WakeUp<Input> {
         let mut left = self.period().saturating_sub(self.ticked.elapsed());
         // A terminal that is not ready wakes the session when it is.
         if self.due && self.terminal.is_ready() {
@@ -250,15 +262,15 @@ impl<'s> Session<'s> {
         wait(self.terminal, signals, &self.loader.loaded, &after(left))
     }
 
-    fn act(&mut self, woken: WakeUp<Loaded>) -> Option<Exit> {
+    fn act(&mut self, woken: WakeUp<Input>) -> Option<Exit> {
         match woken {
             WakeUp::Time | WakeUp::Drawn | WakeUp::Silence => None,
             WakeUp::End(exit) => Some(exit),
             WakeUp::Typed(typed) => self.typed(typed),
-            WakeUp::News(Loaded { generation, state }) => {
+            WakeUp::News(loaded) => {
                 // A choice of the user is shown at once, news of evolution with the next tick.
                 self.due |= !self.app.context().follows();
-                let effects = self.app.update(Input::Population { generation, state });
+                let effects = self.app.update(loaded);
                 self.run_effects(effects)
             }
             WakeUp::Job(Job::Resize) => {

@@ -10,6 +10,7 @@ use super::view::View;
 use crate::dashboard::context::{Mode, ViewContext};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::{Paint, fitted, fitted_end, one_line, put, width, wrapped};
+use crate::files::ByteCount;
 use crate::lab::Ending;
 
 /// The state of the run, its settings, and the latest messages.
@@ -103,6 +104,10 @@ fn facts(context: &ViewContext, room: usize) -> Vec<Fact> {
         ("trials", trials, Paint::Text),
         ("folder", context.folder.clone(), Paint::Text),
     ]);
+    let bytes = context
+        .folder_bytes
+        .map(|bytes| ByteCount(bytes).to_string());
+    facts.extend(bytes.map(|bytes| ("folder size", bytes, Paint::Text)));
     if random_ranks(context).is_some() {
         facts.push(("ranks", String::from("drawn at random"), Paint::Notice));
     }

@@ -1,18 +1,18 @@
 //! The populations of a run.
 
 use std::collections::VecDeque;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use thiserror::Error;
 
 use crate::evolution::EvolutionState;
-use crate::files::FileError;
+use crate::files::{FileError, folder_bytes};
 use crate::lab::checkpoint::Checkpoint;
 use crate::lab::controls::Controls;
 use crate::lab::experiment::AnyExperiment;
-use crate::lab::folder::CHECKPOINT;
+use crate::lab::folder::{CHECKPOINT, kept_path};
+use crate::lab::kept::{kept_generations, ranges};
 
 /// Populations that are cached.
 const CAPACITY: usize = 8;
@@ -96,6 +96,35 @@ impl Archive {
         Ok(state)
     }
 
+    /// Returns the population after a generation, or that of the nearest generation that was kept.
+    ///
+    /// # Errors
+    /// When none was kept, or it cannot be read.
+    pub fn nearest(&mut self, generation: u64) -> Result<Arc<EvolutionState>, ArchiveError> {
+        let exact = self.generation(generation);
+        let Err(ArchiveError::NotKept { .. }) = exact else {
+            return exact;
+        };
+        let mut kept = kept_generations(&self.folder);
+        kept.extend(self.latest().ok().map(|state| state.generation));
+        // The run may thin out a state before it is read.
+        kept.sort_by_key(|kept| kept.abs_diff(generation));
+        kept.dedup();
+        for near in kept {
+            match self.generation(near) {
+                Err(ArchiveError::NotKept { .. }) => {}
+                found => return found,
+            }
+        }
+        exact
+    }
+
+    /// Returns the size of the run folder in bytes.
+    #[must_use]
+    pub fn folder_bytes(&self) -> u64 {
+        folder_bytes(&self.folder)
+    }
+
     fn cached(&mut self, generation: u64) -> Option<Arc<EvolutionState>> {
         let mut states = self.cache.iter();
         let place = states.position(|state| state.generation == generation)?;
@@ -107,8 +136,7 @@ impl Archive {
     }
 
     fn kept(&self, generation: u64) -> Result<EvolutionState, ArchiveError> {
-        let generations = self.folder.join("generations");
-        let kept = self.read(&generations.join(format!("{generation:06}.json")))?;
+        let kept = self.read(&kept_path(&self.folder, generation))?;
         if let Some(state) = kept {
             return Ok(state);
         }
@@ -117,7 +145,10 @@ impl Archive {
         let fits = latest.filter(|state| state.generation == generation);
         fits.ok_or_else(|| ArchiveError::NotKept {
             generation,
-            allowed: allowed(&generations),
+            allowed: match kept_generations(&self.folder).as_slice() {
+                [] => String::from("the latest"),
+                kept => ranges(kept),
+            },
         })
     }
 
@@ -133,24 +164,5 @@ impl Archive {
         Ok(Some(
             self.experiment.population(&checkpoint).map_err(wrong)?,
         ))
-    }
-}
-
-/// Returns the generations in a folder in words.
-fn allowed(folder: &Path) -> String {
-    let names = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut kept: Vec<u64> = names
-        .filter_map(|entry| {
-            let name = entry.file_name();
-            name.to_str()?.strip_suffix(".json")?.parse().ok()
-        })
-        .collect();
-    kept.sort_unstable();
-    match kept[..] {
-        [] => String::from("the latest"),
-        [only] => only.to_string(),
-        [first, .., last] if last - first + 1 == kept.len() as u64 => format!("{first} to {last}"),
-        [first, second, .., last] => format!("{first}, {second}, ... {last}"),
-        [first, second] => format!("{first}, {second}"),
     }
 }
