@@ -12,7 +12,7 @@ use super::signals::SignalWatcher;
 use crate::dashboard::keys::KeyMap;
 use crate::dashboard::look::{Look, Signs, Theme};
 use crate::dashboard::session::{Exit, Session, Source};
-use crate::dashboard::terminal::{Abilities, Terminal, is_terminal};
+use crate::dashboard::terminal::{Abilities, Background, Terminal, is_terminal};
 use crate::dashboard::{App, Config, Mode, RunsTable, ViewContext};
 use crate::hierarchy::Glyphs;
 use crate::lab::AnyExperiment;
@@ -24,7 +24,7 @@ use crate::words::shell_path;
 pub(super) struct AppearanceArgs {
     /// Colour theme: dark, light, high-contrast, mono, or one from the configuration file
     /// [default: from the configuration file; mono if NO_COLOR is set or the terminal has no
-    /// colours; otherwise dark].
+    /// colours; otherwise light or dark, as the terminal's background is].
     #[arg(long, value_name = "NAME")]
     theme: Option<String>,
 
@@ -41,7 +41,7 @@ pub(super) struct AppearanceArgs {
 
 impl AppearanceArgs {
     /// Reads the configuration file and the environment, for a terminal with these abilities.
-    pub(super) fn load(&self, abilities: Abilities) -> Result<(Look, KeyMap), Failure> {
+    pub(super) fn load(&self, abilities: Abilities) -> Result<Appearance, Failure> {
         let default = || Config::default_path().filter(|path| path.exists());
         let config = match self.config.clone().or_else(default) {
             Some(path) => Config::load(&path)?,
@@ -54,18 +54,39 @@ impl AppearanceArgs {
         };
         let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let mono = no_colour || !abilities.colour;
-        let (themes, first) = match &self.theme {
-            Some(theme) => (config.themes, theme.clone()),
-            None if mono => (vec![Theme::mono()], String::from("mono")),
-            None => (config.themes, config.theme),
+        let named = self.theme.clone().or(config.theme);
+        let (themes, named) = match (&self.theme, mono) {
+            (None, true) => (vec![Theme::mono()], Some(String::from("mono"))),
+            _ => (config.themes, named),
         };
+        let is_named = named.is_some();
+        let first = named.unwrap_or_else(|| String::from(DARK));
         if !themes.iter().any(|theme| theme.name == first) {
             let names: Vec<_> = themes.iter().map(|theme| theme.name.as_str()).collect();
             let message = format!("--theme: found {first:?}; allowed: {}", names.join(", "));
             return Err(Failure::Message(message));
         }
-        Ok((Look::new(themes, &first, Signs::of(glyphs)), config.keys))
+        Ok(Appearance {
+            look: Look::new(themes, &first, Signs::of(glyphs)),
+            keys: config.keys,
+            is_named,
+        })
     }
+}
+
+/// The theme for a dark background, and for a terminal that does not tell.
+const DARK: &str = "dark";
+/// The theme for a light background.
+const LIGHT: &str = "light";
+
+/// The look and the keys that the user has chosen.
+pub(super) struct Appearance {
+    /// The look.
+    pub(super) look: Look,
+    /// The keys.
+    pub(super) keys: KeyMap,
+    /// Whether the user or the kind of terminal has named the theme.
+    is_named: bool,
 }
 
 /// The options of commands that show a dashboard.
@@ -140,10 +161,11 @@ impl DashboardArgs {
 
     /// Reads the settings, so that mistakes are reported before anything is computed.
     fn load(&self) -> Result<DashboardSettings, Failure> {
-        let (look, keys) = self.appearance.load(Abilities::of_type(&terminal_type()))?;
+        let appearance = self.appearance.load(Abilities::of_type(&terminal_type()))?;
         Ok(DashboardSettings {
-            look,
-            keys,
+            look: appearance.look,
+            keys: appearance.keys,
+            suits_terminal: !appearance.is_named,
             fps: self.fps,
             mouse: self.mouse,
             start: None,
@@ -156,6 +178,8 @@ impl DashboardArgs {
 pub(super) struct DashboardSettings {
     pub(super) look: Look,
     keys: KeyMap,
+    /// Whether the theme follows the terminal's background.
+    suits_terminal: bool,
     fps: f64,
     mouse: bool,
     /// The state in which rollouts start, if one was given.
@@ -170,7 +194,7 @@ impl DashboardSettings {
 
     /// Shows the dashboard of a run until the user leaves it or something ends it.
     pub(super) fn show(
-        self,
+        mut self,
         experiment: &'static dyn AnyExperiment,
         folder: &Path,
         source: Source<'_>,
@@ -181,10 +205,23 @@ impl DashboardSettings {
         Ok(session.run(&signals.received)?)
     }
 
-    /// Takes the terminal for a dashboard.
-    pub(super) fn terminal(&self) -> Result<Terminal, Failure> {
-        let terminal = Terminal::open(self.mouse);
-        Ok(terminal.map_err(|error| format!("terminal: {error}"))?)
+    /// Takes the terminal for a dashboard, and chooses the theme by its background if nobody has
+    /// named one.
+    pub(super) fn terminal(&mut self) -> Result<Terminal, Failure> {
+        // The Linux console prints the question, and its background is dark.
+        let asks = self.suits_terminal && !terminal_type().starts_with("linux");
+        let terminal = Terminal::open(self.mouse, asks);
+        let terminal = terminal.map_err(|error| format!("terminal: {error}"))?;
+        if self.suits_terminal {
+            let hint = std::env::var("COLORFGBG").unwrap_or_default();
+            let background = terminal.background.or(Background::of_hint(&hint));
+            let theme = match background {
+                Some(Background::Light) => LIGHT,
+                Some(Background::Dark) | None => DARK,
+            };
+            self.look.use_theme(theme);
+        }
+        Ok(terminal)
     }
 
     /// A dashboard of a run on a terminal.

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use super::args::StartArg;
-use super::dashboard::AppearanceArgs;
+use super::dashboard::{Appearance, AppearanceArgs};
 use super::output::{self, CommandResult};
 use crate::dashboard::keys::Key;
 use crate::dashboard::terminal::{Abilities, LARGEST_SIDE};
@@ -100,7 +100,11 @@ pub(super) fn main(args: &Args) -> CommandResult {
     }
     let keys: Result<Vec<Key>, _> = args.keys.split_ascii_whitespace().map(str::parse).collect();
     let keys = keys.map_err(|error| format!("--keys: {error}"))?;
-    let (look, key_map) = args.appearance.load(Abilities::ALL)?;
+    let Appearance {
+        look,
+        keys: key_map,
+        ..
+    } = args.appearance.load(Abilities::ALL)?;
     let recording = Recording::read(&args.run_dir)?;
     let lived = recording.generations();
     if let Some(found) = args.generation.filter(|found| !(1..=lived).contains(found)) {

@@ -189,3 +189,62 @@ fn an_invalid_theme_or_key_map_is_reported_before_anything_is_computed() {
         assert!(!place.folder.exists());
     }
 }
+
+/// The colours of text in the themes `dark` and `light`, as they are sent.
+const DARK: &[u8] = b"38;5;252";
+const LIGHT: &[u8] = b"38;5;235";
+
+#[test]
+fn the_theme_suits_the_background_of_the_terminal() {
+    let place = Place::new();
+    maxq_lab::lab::start(
+        crate::common::short(&[]),
+        1,
+        &place.folder,
+        &crate::common::threads(1),
+    )
+    .unwrap()
+    .join()
+    .unwrap();
+    let bright = "\u{1b}]11;rgb:ffff/ffff/ffff\u{1b}\\\u{1b}[?62c";
+    let black = "\u{1b}]11;rgb:0000/0000/0000\u{7}\u{1b}[?62c";
+    // The answer, the hint of the environment, an option, and the colour of text.
+    for (answer, hint, option, text) in [
+        (bright, "15;0", None, LIGHT),
+        (black, "0;15", None, DARK),
+        ("\u{1b}[?62c", "", None, DARK),
+        ("\u{1b}[?62c", "0;15", None, LIGHT),
+        ("", "0;15", None, LIGHT),
+        (bright, "", Some("--theme=dark"), DARK),
+    ] {
+        let arguments: Vec<_> = ["replay", place.text()].into_iter().chain(option).collect();
+        let mut command = program(&arguments);
+        command.env("COLORFGBG", hint);
+        let mut pty = Pty::answering(120, 40, command, answer);
+        pty.wait_for("REPLAY");
+        let raw = pty.raw();
+        let has = |colour: &[u8]| raw.windows(colour.len()).any(|part| part == colour);
+        assert!(has(text), "{answer:?} {hint:?} {option:?}");
+        assert_eq!(has(DARK), text == DARK, "{answer:?} {hint:?} {option:?}");
+        pty.press("q");
+        wait_for_good_end(&mut pty, 0);
+    }
+}
+
+#[test]
+fn a_late_answer_and_keys_pressed_before_the_first_frame_do_no_harm() {
+    let place = Place::new();
+    let arguments = place.run(ENDLESS);
+    let arguments: Vec<_> = arguments.iter().map(String::as_str).collect();
+    // Typed while the terminal is asked: the help opens.
+    let mut pty = Pty::answering(120, 40, program(&arguments), "?\u{1b}[?62c");
+    pty.wait_for("Help");
+    pty.press("\u{1b}");
+    pty.wait_gone("Help");
+    pty.send(b"\x1b]11;rgb:ecec/eaea/e4e4\x1b\\\x1b[?62c");
+    pty.press("?");
+    pty.wait_for("Help");
+    pty.press("\u{1b}");
+    pty.wait_gone("Help");
+    leave(&mut pty);
+}

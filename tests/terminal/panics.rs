@@ -40,7 +40,7 @@ fn the_process_that_panics() {
     let Ok(place) = std::env::var(WHERE) else {
         return;
     };
-    let mut terminal = Terminal::open(true).unwrap();
+    let mut terminal = Terminal::open(true, false).unwrap();
     terminal.show().unwrap();
     let draw = |frame: &mut ratatui::Frame<'_>| frame.render_widget("a frame", frame.area());
     terminal.draw(draw).unwrap();

@@ -22,7 +22,7 @@ const INTERVAL: Duration = Duration::from_millis(5);
 
 pub struct Pty {
     master: Option<Box<dyn MasterPty + Send>>,
-    keys: Option<Box<dyn Write + Send>>,
+    keys: Arc<Mutex<Option<Box<dyn Write + Send>>>>,
     pub child: Box<dyn Child + Send + Sync>,
     output: Arc<Output>,
     reader: Option<JoinHandle<()>>,
@@ -38,6 +38,10 @@ struct Output {
     /// The latest bytes, to search for escape sequences.
     raw: Mutex<Vec<u8>>,
 }
+
+/// What a program asks at its start, and the answer of a terminal without a background colour.
+const QUESTION: &[u8] = b"\x1b]11;?\x1b\\\x1b[c";
+const ATTRIBUTES: &str = "\x1b[?62;22c";
 
 fn nonzero(number: u16) -> NonZeroU16 {
     NonZeroU16::new(number).unwrap()
@@ -80,10 +84,16 @@ pub fn in_environment(mut command: CommandBuilder) -> CommandBuilder {
 impl Pty {
     /// Starts a command in a new terminal.
     pub fn start(columns: u16, rows: u16, command: CommandBuilder) -> Self {
+        Self::answering(columns, rows, command, ATTRIBUTES)
+    }
+
+    /// Starts a command in a new terminal, which answers the question for its background with
+    /// `answer`.
+    pub fn answering(columns: u16, rows: u16, command: CommandBuilder, answer: &str) -> Self {
         let pair = native_pty_system().openpty(size(columns, rows)).unwrap();
         let modes_before = modes(pair.master.as_ref());
         let mut reader = pair.master.try_clone_reader().unwrap();
-        let keys = pair.master.take_writer().unwrap();
+        let keys = Arc::new(Mutex::new(Some(pair.master.take_writer().unwrap())));
         let child = pair.slave.spawn_command(command).unwrap();
         drop(pair.slave);
         let output = Arc::new(Output {
@@ -94,10 +104,19 @@ impl Pty {
             raw: Mutex::new(Vec::new()),
         });
         let showing = Arc::clone(&output);
+        let (answering, answer) = (Arc::clone(&keys), answer.as_bytes().to_vec());
         let reader = thread::spawn(move || {
             let mut buffer = [0; 1 << 14];
             while let Ok(count) = reader.read(&mut buffer) {
                 showing.take(&buffer[..count]);
+                if buffer[..count]
+                    .windows(QUESTION.len())
+                    .any(|part| part == QUESTION)
+                    && let Some(keys) = answering.lock().unwrap().as_mut()
+                {
+                    keys.write_all(&answer).unwrap();
+                    keys.flush().unwrap();
+                }
                 while showing.stalled.load(Ordering::SeqCst) {
                     thread::sleep(INTERVAL);
                 }
@@ -108,7 +127,7 @@ impl Pty {
         });
         Self {
             master: Some(pair.master),
-            keys: Some(keys),
+            keys,
             child,
             output,
             reader: Some(reader),
@@ -159,7 +178,8 @@ impl Pty {
 
     /// Sends bytes as a keyboard would.
     pub fn send(&mut self, bytes: &[u8]) {
-        let keys = self.keys.as_mut().unwrap();
+        let mut keys = self.keys.lock().unwrap();
+        let keys = keys.as_mut().unwrap();
         keys.write_all(bytes).unwrap();
         keys.flush().unwrap();
     }
@@ -207,7 +227,7 @@ impl Pty {
             thread::sleep(INTERVAL);
         }
         reader.join().unwrap();
-        self.keys = None;
+        *self.keys.lock().unwrap() = None;
         self.master = None;
     }
 

@@ -35,10 +35,10 @@ pub(super) fn show(
 ) -> Result<Exit, Failure> {
     let runs = study.runs();
     let folder = study.folder.display().to_string();
-    let mut table = dashboard.table(study.plan.name.clone(), folder);
     let interval = dashboard.period().max(SHORTEST_INTERVAL);
     let reader = Reader::start(study.clone(), interval, own)?;
     let mut terminal = dashboard.terminal()?;
+    let mut table = dashboard.table(study.plan.name.clone(), folder);
     loop {
         let session = RunsSession::new(&mut table, &mut terminal, &reader.news);
         let place = match session.run(&signals.received)? {

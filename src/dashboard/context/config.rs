@@ -22,8 +22,8 @@ pub struct Config {
     pub keys: KeyMap,
     /// The built-in themes with the user's changes.
     pub themes: Vec<Theme>,
-    /// The name of the initial theme.
-    pub theme: String,
+    /// The name of the initial theme; `None` if it is to suit the terminal.
+    pub theme: Option<String>,
 }
 
 impl Default for Config {
@@ -31,7 +31,7 @@ impl Default for Config {
         Self {
             keys: KeyMap::default(),
             themes: Theme::all(),
-            theme: String::from("dark"),
+            theme: None,
         }
     }
 }
@@ -207,7 +207,7 @@ impl File {
                 let found = theme.as_ref().clone();
                 return Err((theme.span().start, Problem::Theme { found, allowed }));
             }
-            config.theme.clone_from(theme.as_ref());
+            config.theme = Some(theme.as_ref().clone());
         }
         for (name, style) in &self.styles {
             paint(&mut config, name, style)?;
@@ -234,17 +234,16 @@ fn bind(map: &mut KeyMap, name: &Spanned<String>, keys: &Spanned<Keys>) -> Resul
     Ok(action)
 }
 
-/// Changes a style of the configured theme.
+/// Changes a style of the configured theme, or of all themes if none is configured.
 fn paint(config: &mut Config, name: &Spanned<String>, style: &Spanned<String>) -> Result<(), At> {
     let paint = Paint::find(name.as_ref()).ok_or_else(|| {
         let found = name.as_ref().clone();
         (name.span().start, Problem::Paint { found })
     })?;
-    let theme = config
-        .themes
-        .iter_mut()
-        .find(|theme| theme.name == config.theme);
-    let set = theme.map_or(Ok(()), |theme| theme.set(paint, style.as_ref()));
+    let is_meant =
+        |theme: &&mut Theme| config.theme.as_ref().is_none_or(|name| theme.name == *name);
+    let mut themes = config.themes.iter_mut().filter(is_meant);
+    let set = themes.try_for_each(|theme| theme.set(paint, style.as_ref()));
     set.map_err(|source| {
         let paint = name.as_ref().clone();
         (style.span().start, Problem::Style { paint, source })
@@ -263,7 +262,7 @@ mod tests {
     fn keys_and_styles_are_taken_over() {
         let text = "theme = \"light\"\n[keys]\npause = \"z\"\nquit = [\"q\", \"Q\"]\n[styles]\nwall = \"bold red on 16\"\n";
         let config = Config::read(text, "config.toml").unwrap();
-        assert_eq!(config.theme, "light");
+        assert_eq!(config.theme.as_deref(), Some("light"));
         assert_eq!(config.keys.keys(Action::Pause), ["z".parse().unwrap()]);
         assert_eq!(config.keys.keys(Action::Quit).len(), 2);
         let light = &config.themes[1];

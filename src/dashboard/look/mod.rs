@@ -55,6 +55,12 @@ impl Look {
             .map_or("", |theme| &theme.name)
     }
 
+    /// Switches to the theme with a name, if there is one.
+    pub fn use_theme(&mut self, name: &str) {
+        let named = self.themes.iter().position(|theme| theme.name == name);
+        self.current = named.unwrap_or(self.current);
+    }
+
     /// Switches to the next theme.
     pub fn next_theme(&mut self) {
         self.current = (self.current + 1) % self.themes.len().max(1);

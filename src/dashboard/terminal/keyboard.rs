@@ -38,9 +38,17 @@ struct State {
 }
 
 impl Keyboard {
-    /// Starts the reader; the receiver of its events disconnects when the terminal is gone.
-    pub(super) fn start(screen: Arc<Screen>) -> io::Result<(Self, Receiver<Event>)> {
+    /// Starts the reader; the receiver of its events disconnects when the terminal is gone. The
+    /// first events are those that were `typed` before.
+    pub(super) fn start(
+        screen: Arc<Screen>,
+        typed: Vec<Event>,
+    ) -> io::Result<(Self, Receiver<Event>)> {
         let (sender, events) = bounded(CAPACITY);
+        for event in typed {
+            // More keys than there is room for have no effect.
+            let _full = sender.try_send(event);
+        }
         let (wake, woken) = UnixStream::pair()?;
         wake.set_nonblocking(true)?;
         woken.set_nonblocking(true)?;

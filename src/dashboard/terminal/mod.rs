@@ -5,6 +5,7 @@
 //! again.
 
 mod abilities;
+mod background;
 mod cursor;
 mod decoder;
 mod jobs;
@@ -28,6 +29,7 @@ use ratatui::layout::Size;
 use rustix::process::{Signal, kill_current_process_group};
 
 pub use abilities::Abilities;
+pub use background::Background;
 pub use jobs::Job;
 pub use screen::restore;
 pub use tty::{LARGEST_SIDE, detach, is_attached, is_terminal};
@@ -49,6 +51,8 @@ pub struct Terminal {
     /// Notified when a frame has been written and the next one can be drawn; an error when the
     /// terminal is gone.
     pub drawn: Receiver<io::Result<()>>,
+    /// The background, if the terminal was asked for it and has answered.
+    pub background: Option<Background>,
     screen: Arc<Screen>,
     painter: ratatui::Terminal<Painter>,
     writer: Writer,
@@ -57,16 +61,22 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// Opens the terminal of standard input, without any visible effect yet.
+    /// Opens the terminal of standard input, without any visible effect yet. If `asks`, asks it for
+    /// its background, and waits a moment for the answer.
     ///
     /// From now on a panic of any thread restores the terminal before it is reported.
     ///
     /// # Errors
     /// When standard input is not a terminal, or the operating system refuses.
-    pub fn open(mouse: bool) -> io::Result<Self> {
+    pub fn open(mouse: bool, asks: bool) -> io::Result<Self> {
         let screen = Screen::new(Tty::open()?, mouse);
         give_back_on_panic();
-        let (keyboard, keys) = Keyboard::start(Arc::clone(&screen))?;
+        let (background, typed) = if asks {
+            background::ask(&screen.tty)
+        } else {
+            (None, Vec::new())
+        };
+        let (keyboard, keys) = Keyboard::start(Arc::clone(&screen), typed)?;
         let (writer, drawn) = Writer::start(Arc::clone(&screen))?;
         let (jobs, told) = Jobs::start()?;
         let size = screen.tty.size().unwrap_or(Size::new(80, 24));
@@ -74,6 +84,7 @@ impl Terminal {
             keys,
             jobs: told,
             drawn,
+            background,
             screen,
             painter: ratatui::Terminal::new(Painter::new(size))?,
             writer,
