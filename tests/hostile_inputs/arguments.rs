@@ -34,7 +34,7 @@ fn invalid_arguments_are_rejected_with_code_2() {
         ),
         (
             &["run", "smoke", "--keep", "some"],
-            &["found \"some\"; allowed: all, none"],
+            &["found \"some\"; allowed: thinned, all, none"],
         ),
         (&["resume"], &["<RUN_DIR>"]),
         (&["evaluate", "smoke"], &["--tree <TREE>"]),
