@@ -13,7 +13,9 @@
 
 mod reference;
 
-use maxq_lab::learning::{Agent, Change, Explanation, Hierarchy, PrimitiveSet, SelectionRule};
+use maxq_lab::learning::{
+    Agent, Change, Exit, Explanation, Hierarchy, PrimitiveSet, SelectionRule,
+};
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::worlds::World;
 use maxq_lab::worlds::foraging::ForagingWorld;
@@ -100,7 +102,7 @@ impl Met {
         for update_trace in &explanation.update_traces {
             self.distant += usize::from(update_trace.updates.len() > 1);
             self.at_goal += usize::from(update_trace.termination.is_some_and(|end| end.at_goal));
-            self.failed += usize::from(update_trace.pseudo_reward < 0.0);
+            self.failed += usize::from(update_trace.exit == Exit::PseudoReward(-1.0));
         }
         self.learned_actions += usize::from(explanation.action.learned.is_some());
     }
@@ -202,10 +204,8 @@ fn assert_numbers(
             changed(end.temperature, [&old, &new].map(|r| r.tau[i]));
             // Delivery is a goal of every subtask, a lost target of none.
             expected_end &= end.at_goal;
-            assert_eq!(
-                update_trace.pseudo_reward,
-                if end.at_goal { 0.0 } else { -1.0 }
-            );
+            let pseudo_reward = if end.at_goal { 0.0 } else { -1.0 };
+            assert_eq!(update_trace.exit, Exit::PseudoReward(pseudo_reward));
         }
     }
     assert!(after.state_type != DELIVERED || expected_end);

@@ -93,7 +93,7 @@ impl Args {
             Primitive {
                 subtask: subtask.name.clone(),
                 actions: match &subtask.kind {
-                    Kind::Primitive { actions } => actions.clone(),
+                    Kind::Primitive { actions, .. } => actions.clone(),
                     Kind::Composite { .. } => Vec::new(),
                 },
                 rows: rows.collect(),

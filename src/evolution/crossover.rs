@@ -3,10 +3,10 @@
 use rand::RngExt;
 
 use super::individual::{Individual, Inherited, Origin, Parent};
-use crate::hierarchy::check;
+use crate::hierarchy::{Tree, check};
 use crate::learning::{CompositeValues, Hierarchy};
 use crate::random::Stream;
-use crate::scenario::{Inheritance, Scenario};
+use crate::scenario::{Inheritance, Reset, Scenario};
 use crate::worlds::Catalogue;
 
 /// Pairs of crossover sites drawn before two parents count as incompatible. A tree has about
@@ -49,8 +49,8 @@ pub fn crossover(
 /// Returns the receiver with the subtree at its site replaced by the donor's.
 ///
 /// Composite subtasks keep their learned values, except those on the path from the parent
-/// of the new subtree to the root, which are reset. Under Darwinian inheritance all are
-/// reset.
+/// of the new subtree to the root, which are reset. With `reset: child` only what the parent has
+/// learned about the new subtree is reset. Under Darwinian inheritance all are reset.
 fn offspring(
     (receiver, site): (&Individual, usize),
     (donor, donor_site): (&Individual, usize),
@@ -62,11 +62,17 @@ fn offspring(
     let tree = old.grafted(site, given, donor_site);
     let graft = site..site + given.subtree(donor_site).len();
     let darwinian = scenario.evolution.inheritance == Inheritance::Darwinian;
-    let path: Vec<usize> = tree.ancestors(site).collect();
+    let mut path = Vec::new();
+    if scenario.evolution.reset == Reset::Path {
+        path.extend(tree.ancestors(site));
+    }
 
     let mut values = receiver.hierarchy.values().to_vec();
     let donated = donor.hierarchy.values()[given.subtree(donor_site)].to_vec();
     values.splice(old.subtree(site), donated);
+    if scenario.evolution.reset == Reset::Child {
+        reset_new_child(&tree, site, &mut values, scenario, catalogue);
+    }
 
     let (mut inherited, mut reset) = (Vec::new(), Vec::new());
     for (node, value) in values.iter_mut().enumerate() {
@@ -113,4 +119,23 @@ fn offspring(
         hierarchy: hierarchy.unwrap_or_else(|| unreachable!("values were spliced as the tree was")),
         primitives,
     }
+}
+
+/// Resets what the parent of the node `child` has learned about it.
+pub(super) fn reset_new_child(
+    tree: &Tree,
+    child: usize,
+    values: &mut [Option<CompositeValues>],
+    scenario: &Scenario,
+    catalogue: &Catalogue,
+) {
+    let Some(parent) = tree.nodes()[child].parent else {
+        return;
+    };
+    let place = tree.children(parent).position(|other| other == child);
+    let subtask = tree.subtask(parent);
+    let children: Vec<_> = tree.children(parent).map(|c| tree.subtask(c)).collect();
+    values[parent] = values[parent].as_ref().zip(place).and_then(|(old, place)| {
+        old.with_new_child(place, subtask, &children, catalogue, &scenario.learning)
+    });
 }

@@ -14,7 +14,7 @@ use super::record::GenerationRecord;
 use super::trials::{Generation, IndividualTrials, TrialResults, TrialStarts, is_experienced};
 use crate::learning::{Gate, PolicySamples, PrimitiveSet, Stopped};
 use crate::random::{Purpose, stream};
-use crate::scenario::{PrimitiveLearning, Selection, Variation};
+use crate::scenario::{EvolutionSettings, PrimitiveLearning, Selection, Variation};
 use crate::worlds::World;
 
 /// The state of an evolution: with the scenario and the seed, all that is needed to
@@ -37,10 +37,13 @@ pub struct EvolutionState {
 }
 
 impl EvolutionState {
-    /// Returns whether evolution has ended: converged, or at the generation limit.
+    /// Returns whether evolution has ended: converged, or at a limit.
     #[must_use]
-    pub fn is_over(&self, generation_limit: u64) -> bool {
-        self.converged || self.generation >= generation_limit
+    pub fn is_over(&self, evolution: &EvolutionSettings) -> bool {
+        let spent = |limit| self.control_steps >= limit;
+        self.converged
+            || self.generation >= evolution.generation_limit
+            || evolution.control_step_limit.is_some_and(spent)
     }
 }
 
@@ -111,11 +114,10 @@ impl<'e, W: World> Evolution<'e, W> {
         &self.state
     }
 
-    /// Returns whether evolution has ended: converged, or at the generation limit.
+    /// Returns whether evolution has ended: converged, or at a limit.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        let limit = self.experiment.scenario.evolution.generation_limit;
-        self.state.is_over(limit)
+        self.state.is_over(&self.experiment.scenario.evolution)
     }
 
     /// Runs one generation: lines 8 and 9, except before the first generation, then lines 3

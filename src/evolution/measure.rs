@@ -62,7 +62,9 @@ impl<W: World> Measurement<'_, W> {
             |(_, results): &(_, TrialResults)| canonical(results.hierarchy.tree(), catalogue);
         let first = structure(&ranked[0]);
         // Only crossover can make one structure of many; all else ends at the limit.
-        let may_converge = self.experiment.scenario.evolution.variation == Variation::Crossover;
+        let evolution = &self.experiment.scenario.evolution;
+        let may_converge =
+            evolution.stop_on_convergence && evolution.variation == Variation::Crossover;
         Ok(GenerationRecord {
             generation,
             mean_difference: difference as f64 / others.len().max(1) as f64,

@@ -5,11 +5,12 @@
 
 use rand::RngExt;
 
+use super::crossover::reset_new_child;
 use super::individual::{Individual, Mutation, Origin};
 use crate::hierarchy::{Tree, check, random_subtree, to_text};
 use crate::learning::{CompositeValues, Hierarchy};
 use crate::random::Stream;
-use crate::scenario::Scenario;
+use crate::scenario::{Reset, Scenario};
 use crate::worlds::{Catalogue, SubtaskId};
 
 /// Draws of a node after which a hierarchy counts as impossible to mutate.
@@ -86,7 +87,8 @@ fn pruned(
 /// Adds a child to a composite subtask, drawn uniformly among the children that it lacks and
 /// the rules allow. A composite child gets a random subtree.
 ///
-/// As in crossover, the composite subtasks on the path to the root are reset.
+/// As in crossover, the composite subtasks on the path to the root are reset, or only what the
+/// parent has learned about the new child.
 fn grown(
     individual: Individual,
     scenario: &Scenario,
@@ -117,12 +119,17 @@ fn grown(
         subtree: to_text(&subtree, catalogue),
     };
     let end = tree.subtree(parent).end;
-    let path: Vec<_> = std::iter::once(parent)
-        .chain(tree.ancestors(parent))
-        .collect();
+    let mut path = Vec::new();
+    if scenario.evolution.reset == Reset::Path {
+        path.push(parent);
+        path.extend(tree.ancestors(parent));
+    }
     let mut values = individual.hierarchy.values().to_vec();
     let (_, new) = Hierarchy::new(subtree, catalogue, &scenario.learning).into_parts();
     values.splice(end..end, new);
+    if scenario.evolution.reset == Reset::Child {
+        reset_new_child(&more, end, &mut values, scenario, catalogue);
+    }
     for &node in &path {
         let children = children(&more, node);
         let subtask = more.subtask(node);

@@ -58,7 +58,8 @@ pub struct GenerationRecord {
     ///
     /// `null` for a state type of which no state was found.
     pub selection_probabilities: Vec<Option<BTreeMap<String, f64>>>,
-    /// Whether the better half has one structure, which ends evolution.
+    /// Whether the better half has one structure, which ends evolution; never with
+    /// `stop_on_convergence: false`.
     pub converged: bool,
     /// Control steps of the run up to the end of this generation, with the training of the
     /// primitive subtasks.

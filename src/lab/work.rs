@@ -173,11 +173,10 @@ impl<W: World> WorldRun<'_, W> {
                 control_steps: controls.control_steps(),
             });
         };
-        let limit = scenario.evolution.generation_limit;
         if !self
             .state
             .as_ref()
-            .is_some_and(|state| state.is_over(limit))
+            .is_some_and(|state| state.is_over(&scenario.evolution))
         {
             self.forget_summary();
         }

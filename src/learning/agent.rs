@@ -3,11 +3,10 @@
 use super::Encoder;
 use super::gate::{Gate, Stopped};
 use super::hierarchy::Hierarchy;
-use super::plan::Plan;
+use super::history::History;
+use super::plan::{Plan, Situation};
 use super::primitives::PrimitiveSet;
-use super::selection::Softmax;
 use super::state_values::{Parameters, StateValues};
-use super::visited::Visited;
 use crate::hierarchy::Tree;
 use crate::random::Stream;
 use crate::scenario::LearningSettings;
@@ -29,20 +28,21 @@ pub(super) struct Frame {
 pub struct Agent<'r, W: World> {
     pub(super) world: &'r W,
     pub(super) settings: &'r LearningSettings,
-    pub(super) softmax: Softmax,
     pub(super) parameters: Parameters<'r>,
     tree: Tree,
     /// The present state.
     pub(super) now: StateValues,
     /// The state before the last time step.
     pub(super) before: StateValues,
-    pub(super) visited: Visited,
+    pub(super) history: History,
+    /// Time steps for which the primitive subtask that acts may go on without being chosen again.
+    pub(super) persists: u32,
     pub(super) stack: Vec<Frame>,
     pub(super) step_limit: u32,
     /// gamma^N for N = 0, 1, ... up to the step limit.
     pub(super) discounts: Vec<f32>,
-    /// Room for C~ + V of the children among which a node chooses.
-    pub(super) preferences: Vec<f32>,
+    /// Room for the targets of updates.
+    pub(super) targets: Vec<[f32; 2]>,
 }
 
 /// A trial, running or ended.
@@ -69,6 +69,9 @@ pub struct Update {
     pub state_type: StateType,
     /// Time steps N from s to the child's termination.
     pub steps: usize,
+    /// What i learned of the child's last state beyond its own values there: the pseudo-reward,
+    /// or what its exit is worth.
+    pub exit: f32,
     /// Target minus value of C~.
     pub error_inside: f32,
     /// Target minus value of C.
@@ -87,6 +90,8 @@ pub trait Observer<W: World> {
     fn updated(&mut self, _update: Update) {}
     /// A composite node terminated, at its goal or not.
     fn terminated(&mut self, _node: usize, _at_goal: bool) {}
+    /// The trial is over, and its updates are repeated from here on.
+    fn replays(&mut self) {}
 }
 
 impl<W: World> Observer<W> for () {}
@@ -106,20 +111,15 @@ impl<'r, W: World> Agent<'r, W> {
         let catalogue = world.catalogue();
         let (tree, values) = hierarchy.into_parts();
         let plan = Plan::new(&tree, catalogue, |map| encoder.width(map));
-        let parameters = Parameters {
-            encoder,
-            plan,
-            values,
-            primitives,
-        };
+        let parameters = Parameters::new(encoder, settings, plan, values, primitives);
         let now = StateValues::new(&parameters, catalogue.terminal());
         let powers = std::iter::successors(Some(1.0_f64), |power| Some(power * settings.discount));
         let discounts = powers.map(|power| power as f32);
         Self {
             world,
             settings,
-            softmax: Softmax::new(settings),
-            visited: Visited::new(&parameters.plan),
+            history: History::new(&parameters.plan, settings),
+            persists: 0,
             parameters,
             tree,
             before: now.clone(),
@@ -127,7 +127,7 @@ impl<'r, W: World> Agent<'r, W> {
             stack: Vec::new(),
             step_limit,
             discounts: discounts.take(step_limit as usize + 1).collect(),
-            preferences: Vec::new(),
+            targets: Vec::new(),
         }
     }
 
@@ -170,7 +170,8 @@ impl<'r, W: World> Agent<'r, W> {
 
     /// Begins a trial in a given state.
     pub fn begin_in(&mut self, state: W::State) -> Trial<W::State> {
-        self.visited.clear();
+        self.history.begin();
+        self.persists = 0;
         self.stack.clear();
         self.stack.push(Frame {
             node: 0,
@@ -181,14 +182,17 @@ impl<'r, W: World> Agent<'r, W> {
         Trial {
             state,
             steps: 0,
-            done: self.now.state_type == self.world.catalogue().terminal(),
+            done: self.now.situation.state_type == self.world.catalogue().terminal(),
             reward: 0.0,
         }
     }
 
     pub(super) fn perceive(&mut self, state: &W::State) {
         let percept = self.world.percept(state);
-        self.now
-            .load(self.world.state_type(state), percept.as_ref());
+        let situation = Situation {
+            state_type: self.world.state_type(state),
+            remembers: self.world.catalogue().remembers(percept.as_ref()),
+        };
+        self.now.load(situation, percept.as_ref());
     }
 }

@@ -3,15 +3,17 @@
 //! An explained agent does exactly what an unexplained one does. Values from before the step
 //! are read off a copy, by the same code and from the same numbers that the agent uses.
 
+use std::collections::BTreeMap;
+
 use super::agent::{Agent, Observer, Trial, Update};
 use super::explanation::{
-    ActionChoice, Change, Choice, Explanation, Level, NodeTermination, UpdateTrace,
+    ActionChoice, Change, Choice, Exit, Explanation, Level, NodeTermination, Replayed, UpdateTrace,
 };
-use super::maxq_q::pseudo_reward;
-use super::selection::{SelectionRule, Softmax};
+use super::plan::Situation;
+use super::selection::SelectionRule;
 use super::state_values::{Completion, Parameters, StateValues};
 use crate::random::Stream;
-use crate::scenario::{CompositeChoice, LearningSettings, PrimitiveLearning};
+use crate::scenario::{ExitValue, PrimitiveLearning};
 use crate::worlds::{StateType, World};
 
 /// Records what an agent does in one step.
@@ -22,6 +24,9 @@ struct StepRecorder {
     action: Option<(usize, usize, f32)>,
     updates: Vec<Update>,
     terminated: Vec<(usize, bool)>,
+    /// Whether the trial is over and its updates are repeated.
+    replays: bool,
+    replayed: Vec<Update>,
 }
 
 impl<W: World> Observer<W> for StepRecorder {
@@ -34,11 +39,19 @@ impl<W: World> Observer<W> for StepRecorder {
     }
 
     fn updated(&mut self, update: Update) {
-        self.updates.push(update);
+        if self.replays {
+            self.replayed.push(update);
+        } else {
+            self.updates.push(update);
+        }
     }
 
     fn terminated(&mut self, node: usize, at_goal: bool) {
         self.terminated.push((node, at_goal));
+    }
+
+    fn replays(&mut self) {
+        self.replays = true;
     }
 }
 
@@ -67,24 +80,28 @@ impl<W: World> Agent<'_, W> {
                 .iter()
                 .map(|frame| (frame.node, frame.child))
                 .collect(),
-            softmax: self.softmax,
-            settings: self.settings,
+            step: match self.persists {
+                0 => 1,
+                left => self.settings.persistence - left + 1,
+            },
         };
         let mut recorder = StepRecorder::default();
         self.advance(trial, step_limit, rng, &mut recorder);
         let (node, action, reward) = recorder.action?;
-        let mut again = StateValues::new(&self.parameters, past.now.state_type);
-        again.load(past.now.state_type, percept.as_ref());
+        let Situation { state_type, .. } = past.now.situation;
+        let mut again = StateValues::new(&self.parameters, state_type);
+        again.load(past.now.situation, percept.as_ref());
         Some(Explanation {
             levels: past.levels(&recorder),
             action: past.action(&self.parameters, node, action, &mut again),
             reward,
             update_traces: past.update_traces(
                 &self.parameters,
-                self.now.state_type,
+                self.now.situation.state_type,
                 &recorder,
                 &mut again,
             ),
+            replayed: replayed(&recorder.replayed),
         })
     }
 }
@@ -95,8 +112,8 @@ struct Before<'r> {
     now: StateValues,
     /// Active nodes, each with the child invoked last.
     frames: Vec<(usize, usize)>,
-    softmax: Softmax,
-    settings: &'r LearningSettings,
+    /// For how many time steps the primitive subtask will have acted with this one.
+    step: u32,
 }
 
 impl Before<'_> {
@@ -110,9 +127,7 @@ impl Before<'_> {
         let invoked = |node| recorder.chosen.iter().any(|&(_, child)| child == node);
         path.into_iter()
             .map(|(node, active)| {
-                let (rule, choices) =
-                    self.parameters
-                        .choices(&mut self.now, node, self.softmax, self.settings);
+                let (rule, choices) = self.parameters.choices(&mut self.now, node);
                 Level {
                     node,
                     temperature: self.parameters.temperature(node),
@@ -133,25 +148,28 @@ impl Before<'_> {
         chosen: usize,
         again: &mut StateValues,
     ) -> ActionChoice {
-        let primitive = self.parameters.plan.nodes[node]
-            .primitive
-            .unwrap_or_default();
+        let primitive = self.parameters.plan.acting(node, self.now.situation);
         let values = self
             .parameters
             .action_values(&mut self.now, primitive)
             .to_vec();
-        let temperature = self.settings.temperature_limit as f32;
+        let settings = self.parameters.settings;
+        let temperature = settings.temperature_limit as f32;
         let mut probabilities = vec![0.0; values.len()];
         let rule = self
+            .parameters
             .softmax
             .probabilities(&values, temperature, &mut probabilities);
-        let learns = self.settings.primitive_learning != PrimitiveLearning::Frozen;
+        let learns = settings.primitive_learning != PrimitiveLearning::Frozen;
         let learned = learns.then(|| Change {
             before: values[chosen],
             after: after.action_values(again, primitive)[chosen],
         });
         ActionChoice {
             node,
+            acts_as: self.parameters.primitives.all()[primitive].subtask,
+            step: self.step,
+            persistence: settings.persistence,
             temperature,
             rule,
             values,
@@ -181,15 +199,10 @@ impl Before<'_> {
                 after: after.completion(again, node, child, which),
             };
             let (c_tilde, c) = (change(Completion::Inside), change(Completion::Outside));
-            let goal = self.parameters.plan.nodes[node].goal;
             update_traces.push(UpdateTrace {
                 node,
                 child,
-                pseudo_reward: pseudo_reward(
-                    self.settings,
-                    goal.contains(reached),
-                    terminated.is_some(),
-                ),
+                exit: self.exit(node, reached, updates[0].exit),
                 updates: updates.to_vec(),
                 c_tilde,
                 c,
@@ -204,6 +217,39 @@ impl Before<'_> {
         }
         update_traces
     }
+
+    /// Returns what a node learned of the state `reached` beyond its own values there.
+    fn exit(&self, node: usize, reached: StateType, value: f32) -> Exit {
+        let parameters = &self.parameters;
+        let terminal = !parameters.plan.can_act(node, reached);
+        match parameters.settings.exit_value {
+            ExitValue::PseudoReward => Exit::PseudoReward(value),
+            ExitValue::Continuation if terminal => Exit::Continuation {
+                ancestor: parameters.continues(node, reached),
+                value,
+            },
+            ExitValue::Continuation => Exit::None,
+        }
+    }
+}
+
+/// Sums up the updates of a repeated trial for each node and child, in the order of the nodes.
+fn replayed(updates: &[Update]) -> Vec<Replayed> {
+    let mut sums: BTreeMap<(usize, usize), (usize, f32)> = BTreeMap::new();
+    for update in updates {
+        let (count, sum) = sums.entry((update.node, update.child)).or_default();
+        *count += 1;
+        *sum += update.error_inside.abs();
+    }
+    let replayed = sums
+        .into_iter()
+        .map(|((node, child), (updates, sum))| Replayed {
+            node,
+            child,
+            updates,
+            mean_error: sum / updates as f32,
+        });
+    replayed.collect()
 }
 
 impl Parameters<'_> {
@@ -212,32 +258,21 @@ impl Parameters<'_> {
         &self,
         now: &mut StateValues,
         node: usize,
-        softmax: Softmax,
-        settings: &LearningSettings,
     ) -> (SelectionRule, Vec<Choice>) {
-        let children = self.plan.choices(node, now.state_type);
-        let mut choices: Vec<_> = children
-            .iter()
-            .map(|&child| Choice {
-                node: child,
-                value: self.projected_value(now, child),
-                c_tilde: self.completion(now, node, child, Completion::Inside),
-                c: self.completion(now, node, child, Completion::Outside),
-                probability: 1.0 / children.len() as f32,
-            })
-            .collect();
-        if choices.len() < 2 {
-            return (SelectionRule::OnlyChoice, choices);
+        let children = self.plan.choices(node, now.situation.state_type);
+        if children.is_empty() {
+            return (SelectionRule::OnlyChoice, Vec::new());
         }
-        if settings.composite_choice == CompositeChoice::Random {
-            return (SelectionRule::Uniform, choices);
-        }
-        let values: Vec<_> = choices.iter().map(Choice::preference).collect();
-        let mut probabilities = vec![0.0; values.len()];
-        let rule = softmax.probabilities(&values, self.temperature(node), &mut probabilities);
-        for (choice, probability) in choices.iter_mut().zip(probabilities) {
-            choice.probability = probability;
-        }
-        (rule, choices)
+        let (rule, probabilities) = self.policy(now, node);
+        let probabilities = probabilities.to_vec();
+        let choices = children.iter().zip(probabilities);
+        let choices = choices.map(|(&child, probability)| Choice {
+            node: child,
+            value: self.projected_value(now, child),
+            c_tilde: self.completion(now, node, child, Completion::Inside),
+            c: self.completion(now, node, child, Completion::Outside),
+            probability,
+        });
+        (rule, choices.collect())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::agent::Update;
 use super::selection::SelectionRule;
+use crate::worlds::SubtaskId;
 
 /// A child that a composite node can choose in a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +68,12 @@ impl Level {
 pub struct ActionChoice {
     /// The node.
     pub node: usize,
+    /// The subtask whose actions it chooses from: its own, unless it imitates others.
+    pub acts_as: SubtaskId,
+    /// For how many time steps it has acted since it was chosen, this one included.
+    pub step: u32,
+    /// The most for which it acts before its parent chooses again.
+    pub persistence: u32,
     /// The temperature at which it chooses.
     pub temperature: f32,
     /// How it chooses.
@@ -98,8 +105,8 @@ pub struct UpdateTrace {
     pub node: usize,
     /// The child that returned.
     pub child: usize,
-    /// The node's pseudo-reward for the transition.
-    pub pseudo_reward: f32,
+    /// What the node learned of the next state beyond its own values there.
+    pub exit: Exit,
     /// The updates, one for each state visited by the child, the most recent first.
     pub updates: Vec<Update>,
     /// C~ of the child in the state before this step.
@@ -108,6 +115,35 @@ pub struct UpdateTrace {
     pub c: Change,
     /// How the node itself terminated; `None` if it is still active or was cut off.
     pub termination: Option<NodeTermination>,
+}
+
+/// What a composite node learns of the next state beyond its own values there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exit {
+    /// The pseudo-reward of the transition.
+    PseudoReward(f32),
+    /// The node terminated: the value of the state to the ancestor that goes on.
+    Continuation {
+        /// The ancestor; `None` where the trial is over.
+        ancestor: Option<usize>,
+        /// The value, 0 where the trial is over.
+        value: f32,
+    },
+    /// The node goes on, and no pseudo-reward is in use.
+    None,
+}
+
+/// What a composite node learned about a child when the finished trial was repeated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Replayed {
+    /// The node.
+    pub node: usize,
+    /// The child.
+    pub child: usize,
+    /// Number of updates.
+    pub updates: usize,
+    /// Mean size of the error of C~ before each update.
+    pub mean_error: f32,
 }
 
 /// How a composite node terminated.
@@ -130,4 +166,6 @@ pub struct Explanation {
     pub reward: f32,
     /// What composite nodes learned, the innermost first.
     pub update_traces: Vec<UpdateTrace>,
+    /// What they learned from the repeated trial, after its last step.
+    pub replayed: Vec<Replayed>,
 }

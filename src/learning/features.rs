@@ -148,6 +148,11 @@ impl Table {
 }
 
 impl Features {
+    /// Returns the inputs of the state.
+    pub(super) fn inputs(&self) -> &[f32] {
+        &self.inputs
+    }
+
     /// Loads the inputs of another state.
     #[inline]
     pub fn load(&mut self, inputs: &[f32]) {
@@ -196,7 +201,7 @@ mod tests {
     proptest! {
         #[test]
         fn the_factorised_features_are_those_of_the_definition(
-            inputs in prop::array::uniform7(0.0..=1.0_f32),
+            inputs in prop::array::uniform8(0.0..=1.0_f32),
             variance in any::<bool>(),
             proximity_centres in 2..=3_usize,
         ) {

@@ -56,7 +56,7 @@ impl CompositeValues {
         learning: &LearningSettings,
     ) -> Self {
         let mut values = Self {
-            temperature: learning.initial_temperature as f32,
+            temperature: learning.initial_composite_temperature() as f32,
             parameters: Vec::new(),
             layouts: Vec::with_capacity(children.len()),
         };
@@ -121,6 +121,27 @@ impl CompositeValues {
         };
         let layouts = self.layouts.iter();
         layouts.map(|layout| [next(layout), next(layout)]).collect()
+    }
+
+    /// Returns these values for a subtask whose child at `place` is new: another one than before,
+    /// or one more. The new child's completion functions start from initial values; the others
+    /// and the temperature stay.
+    ///
+    /// Returns `None` if `children`, those of the subtask now, do not fit.
+    #[must_use]
+    pub fn with_new_child(
+        &self,
+        place: usize,
+        subtask: SubtaskId,
+        children: &[SubtaskId],
+        catalogue: &Catalogue,
+        learning: &LearningSettings,
+    ) -> Option<Self> {
+        let mut vectors = self.vectors();
+        vectors.resize(children.len(), Default::default());
+        let initial = Self::new(subtask, children, catalogue, learning);
+        *vectors.get_mut(place)? = initial.vectors().swap_remove(place);
+        Self::from_vectors(subtask, children, catalogue, self.temperature, &vectors)
     }
 
     fn is_finite(&self) -> bool {

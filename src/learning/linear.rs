@@ -89,21 +89,19 @@ impl WithSimd for Values<'_> {
 }
 
 /// Gradient steps on C~ and C of a child, in successive states.
-pub(super) struct Replay<'a, F> {
+pub(super) struct GradientSteps<'a, F> {
     /// The parameters of C~ and of C.
     pub(super) parameters: [&'a mut [f32]; 2],
     /// The features of the states, the most recent state last.
     pub(super) features: &'a [f32],
-    /// The discount for each state, the most recent state first.
-    pub(super) discounts: &'a [f32],
-    /// The targets of C~ and C before they are discounted.
-    pub(super) targets: [f32; 2],
+    /// The targets of C~ and C in each state, the most recent state first.
+    pub(super) targets: &'a [[f32; 2]],
     pub(super) learning_rate: f32,
     /// Called with the number of more recent states and the errors of C~ and C.
     pub(super) watch: F,
 }
 
-impl<F: FnMut(usize, [f32; 2])> Replay<'_, F> {
+impl<F: FnMut(usize, [f32; 2])> GradientSteps<'_, F> {
     /// Learns from all states, the most recent first.
     #[inline]
     pub(super) fn run(self) {
@@ -111,7 +109,7 @@ impl<F: FnMut(usize, [f32; 2])> Replay<'_, F> {
     }
 }
 
-impl<F: FnMut(usize, [f32; 2])> WithSimd for Replay<'_, F> {
+impl<F: FnMut(usize, [f32; 2])> WithSimd for GradientSteps<'_, F> {
     type Output = ();
 
     #[inline(always)]
@@ -119,12 +117,12 @@ impl<F: FnMut(usize, [f32; 2])> WithSimd for Replay<'_, F> {
         let [inside, outside] = self.parameters;
         let width = inside.len();
         let mut rest = self.features;
-        for (recent, discount) in self.discounts.iter().enumerate() {
+        for (recent, target) in self.targets.iter().enumerate() {
             let (others, features) = rest.split_at(rest.len() - width);
             rest = others;
             let errors = [
-                discount * self.targets[0] - dot(simd, inside, features),
-                discount * self.targets[1] - dot(simd, outside, features),
+                target[0] - dot(simd, inside, features),
+                target[1] - dot(simd, outside, features),
             ];
             add(simd, inside, features, self.learning_rate * errors[0]);
             add(simd, outside, features, self.learning_rate * errors[1]);

@@ -9,6 +9,7 @@ mod flat;
 mod gate;
 mod grid;
 mod hierarchy;
+mod history;
 mod linear;
 mod maxq_q;
 mod plan;
@@ -17,12 +18,12 @@ mod policy_samples;
 mod primitives;
 mod selection;
 mod state_values;
+mod targets;
 mod training;
-mod visited;
 
 pub use agent::{Agent, Observer, Trial, Update};
 pub use explanation::{
-    ActionChoice, Change, Choice, Explanation, Level, NodeTermination, UpdateTrace,
+    ActionChoice, Change, Choice, Exit, Explanation, Level, NodeTermination, Replayed, UpdateTrace,
 };
 pub use features::{Encoder, Features};
 pub use flat::{Episode, FlatLearner, FlatMethod};

@@ -3,11 +3,18 @@
 use crate::hierarchy::{Tree, able};
 use crate::worlds::{Catalogue, MapId, StateType, StateTypes, SubtaskId};
 
+/// What the place of parameters and the children that can act depend on in a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Situation {
+    pub(super) state_type: StateType,
+    /// Whether the agent remembers the place that its task needs.
+    pub(super) remembers: bool,
+}
+
 /// A node of the tree, prepared for execution.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlanNode {
     pub(super) subtask: SubtaskId,
-    pub(super) map: MapId,
     active: StateTypes,
     pub(super) goal: StateTypes,
     pub(super) parent: Option<usize>,
@@ -33,9 +40,11 @@ pub(super) struct Plan {
     pub(super) nodes: Vec<PlanNode>,
     /// For each node and state type, with the terminal one: the end of its choices.
     ends: Vec<usize>,
-    /// For each node and state type: where the C~ of the node lies in its parent's
-    /// parameters.
+    /// For each node and situation: where the C~ of the node lies in its parent's parameters.
     blocks: Vec<usize>,
+    /// For each node and situation: the place in the primitive set of the subtask that a
+    /// primitive node acts as.
+    acting: Vec<usize>,
     /// The lists of children that can act, one after the other.
     children: Vec<usize>,
     types: usize,
@@ -49,6 +58,7 @@ impl Plan {
             nodes: Vec::new(),
             ends: vec![0],
             blocks: Vec::new(),
+            acting: Vec::new(),
             children: Vec::new(),
             types,
         };
@@ -65,7 +75,6 @@ impl Plan {
             free[parent] += node.parent.map_or(0, |_| 2 * vector);
             plan.nodes.push(PlanNode {
                 subtask: node.subtask,
-                map: subtask.map,
                 active: subtask.active,
                 goal: subtask.goal(),
                 parent: node.parent,
@@ -74,18 +83,54 @@ impl Plan {
                     stride,
                     vector,
                 },
-                primitive: catalogue.primitives().position(|p| p == node.subtask),
+                primitive: place(catalogue, node.subtask),
             });
-            for state_type in (0..types).map(|t| StateType(t as u8)) {
+            for situation in plan.situations() {
+                let Situation {
+                    state_type,
+                    remembers,
+                } = situation;
+                let block = over.block(state_type, remembers);
+                plan.blocks.push(at + block * stride);
+                let acts_as = catalogue.acts_as(node.subtask, state_type, remembers);
+                plan.acting.push(place(catalogue, acts_as).unwrap_or(0));
+            }
+            for state_type in plan.state_types() {
                 let acts = able[index].contains(state_type);
                 let choices = tree.children(index).filter(|_| acts);
                 plan.children
                     .extend(choices.filter(|&child| able[child].contains(state_type)));
                 plan.ends.push(plan.children.len());
-                plan.blocks.push(at + over.block(state_type) * stride);
             }
         }
         plan
+    }
+
+    /// Returns the number of state types, with the terminal one.
+    pub(super) fn types(&self) -> usize {
+        self.types
+    }
+
+    /// Returns the state types, the terminal one last.
+    pub(super) fn state_types(&self) -> impl Iterator<Item = StateType> + use<> {
+        (0..self.types).map(|t| StateType(t as u8))
+    }
+
+    /// Returns the situations in the order of their lists.
+    fn situations(&self) -> impl Iterator<Item = Situation> + use<> {
+        let types = self.types;
+        [false, true].into_iter().flat_map(move |remembers| {
+            (0..types).map(move |t| Situation {
+                state_type: StateType(t as u8),
+                remembers,
+            })
+        })
+    }
+
+    #[inline(always)]
+    fn list(&self, node: usize, situation: Situation) -> usize {
+        let list = 2 * node + usize::from(situation.remembers);
+        list * self.types + usize::from(situation.state_type.0)
     }
 
     /// Returns the children among which a composite subtask chooses in a state type. There
@@ -113,10 +158,21 @@ impl Plan {
         }
     }
 
-    /// Returns where the C~ of `child` lies in its parent's parameters for a state type. Its
-    /// C lies one parameter vector further on.
+    /// Returns where the C~ of `child` lies in its parent's parameters in a situation. Its C
+    /// lies one parameter vector further on.
     #[inline(always)]
-    pub(super) fn block(&self, child: usize, state_type: StateType) -> usize {
-        self.blocks[child * self.types + usize::from(state_type.0)]
+    pub(super) fn block(&self, child: usize, situation: Situation) -> usize {
+        self.blocks[self.list(child, situation)]
     }
+
+    /// Returns the place in the primitive set of the subtask that a primitive node acts as.
+    #[inline(always)]
+    pub(super) fn acting(&self, node: usize, situation: Situation) -> usize {
+        self.acting[self.list(node, situation)]
+    }
+}
+
+/// Returns the place of a subtask in the primitive set; `None` for a composite one.
+fn place(catalogue: &Catalogue, subtask: SubtaskId) -> Option<usize> {
+    catalogue.primitives().position(|other| other == subtask)
 }

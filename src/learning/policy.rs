@@ -4,9 +4,9 @@ use super::agent::Agent;
 use super::explanation::Choice;
 use super::features::Encoder;
 use super::hierarchy::Hierarchy;
-use super::plan::Plan;
+use super::plan::{Plan, Situation};
 use super::primitives::PrimitiveSet;
-use super::selection::{SelectionRule, Softmax};
+use super::selection::SelectionRule;
 use super::state_values::{Parameters, StateValues};
 use crate::scenario::{CompositeChoice, LearningSettings};
 use crate::worlds::{Catalogue, StateType, SubtaskId, World};
@@ -16,8 +16,8 @@ use crate::worlds::{Catalogue, StateType, SubtaskId, World};
 pub struct Policy<'r> {
     parameters: Parameters<'r>,
     now: StateValues,
-    softmax: Softmax,
-    settings: &'r LearningSettings,
+    /// The input that tells whether the agent remembers the place that its task needs.
+    memory: Option<usize>,
     walk: Walk,
 }
 
@@ -28,21 +28,13 @@ struct Walk {
     totals: Vec<f64>,
     /// The probabilities of the choices of all nodes from the root to the present one.
     shares: Vec<f64>,
-    /// C~ + V of one node's choices.
-    preferences: Vec<f32>,
-    /// Their probabilities.
-    probabilities: Vec<f32>,
 }
 
 impl<'r, W: World> Agent<'r, W> {
     /// Returns the agent's present policy.
     #[must_use]
     pub fn policy(&self) -> Policy<'r> {
-        Policy::of(
-            self.parameters.clone(),
-            self.world.catalogue(),
-            self.settings,
-        )
+        Policy::of(self.parameters.clone(), self.world.catalogue())
     }
 }
 
@@ -57,28 +49,19 @@ impl<'r> Policy<'r> {
         primitives: &PrimitiveSet,
     ) -> Self {
         let (tree, values) = hierarchy.clone().into_parts();
-        let parameters = Parameters {
-            encoder,
-            plan: Plan::new(&tree, catalogue, |map| encoder.width(map)),
-            values,
-            primitives: primitives.clone(),
-        };
-        Self::of(parameters, catalogue, settings)
+        let plan = Plan::new(&tree, catalogue, |map| encoder.width(map));
+        let parameters = Parameters::new(encoder, settings, plan, values, primitives.clone());
+        Self::of(parameters, catalogue)
     }
 
-    fn of(
-        parameters: Parameters<'r>,
-        catalogue: &Catalogue,
-        settings: &'r LearningSettings,
-    ) -> Self {
+    fn of(parameters: Parameters<'r>, catalogue: &Catalogue) -> Self {
         Self {
             now: StateValues::new(&parameters, catalogue.terminal()),
             walk: Walk {
                 totals: vec![0.0; parameters.primitives.all().len()],
                 ..Walk::default()
             },
-            softmax: Softmax::new(settings),
-            settings,
+            memory: catalogue.memory,
             parameters,
         }
     }
@@ -89,13 +72,14 @@ impl<'r> Policy<'r> {
     /// Returns `None` where the root cannot act.
     pub fn greedy(&mut self) -> Option<(SubtaskId, usize)> {
         let mut node = 0;
+        let situation = self.now.situation;
         while self.parameters.plan.nodes[node].primitive.is_none() {
-            if !self.parameters.plan.can_act(node, self.now.state_type) {
+            if !self.parameters.plan.can_act(node, situation.state_type) {
                 return None;
             }
             (node, _) = self.parameters.best_child(&mut self.now, node);
         }
-        let primitive = self.parameters.plan.nodes[node].primitive?;
+        let primitive = self.parameters.plan.acting(node, situation);
         let values = self.parameters.action_values(&mut self.now, primitive);
         let first = values.iter().copied().reduce(f32::max)?;
         let action = values.iter().position(|&value| value == first)?;
@@ -104,7 +88,11 @@ impl<'r> Policy<'r> {
 
     /// Moves to another state, to which all further queries refer.
     pub fn look(&mut self, state_type: StateType, inputs: &[f32]) {
-        self.now.load(state_type, inputs);
+        let situation = Situation {
+            state_type,
+            remembers: self.memory.is_some_and(|input| inputs[input] > 0.5),
+        };
+        self.now.load(situation, inputs);
     }
 
     /// Adds to `totals` the probability of ending in each primitive subtask, in the
@@ -117,7 +105,11 @@ impl<'r> Policy<'r> {
 
     /// Returns V(root, s), or 0 where the root cannot act.
     pub fn value(&mut self) -> f32 {
-        if self.parameters.plan.can_act(0, self.now.state_type) {
+        if self
+            .parameters
+            .plan
+            .can_act(0, self.now.situation.state_type)
+        {
             self.parameters.projected_value(&mut self.now, 0)
         } else {
             0.0
@@ -127,8 +119,7 @@ impl<'r> Policy<'r> {
     /// Returns how a composite node chooses, and the children to choose from. There are none
     /// where it cannot act.
     pub fn choices(&mut self, node: usize) -> (SelectionRule, Vec<Choice>) {
-        self.parameters
-            .choices(&mut self.now, node, self.softmax, self.settings)
+        self.parameters.choices(&mut self.now, node)
     }
 
     /// Returns Q_prim of every action of a primitive subtask, given by its place in the
@@ -142,7 +133,7 @@ impl<'r> Policy<'r> {
             self.walk.totals[primitive] += probability;
             return;
         }
-        let state_type = self.now.state_type;
+        let state_type = self.now.situation.state_type;
         let count = self.parameters.plan.choices(node, state_type).len();
         let first = self.walk.shares.len();
         self.push_shares(node);
@@ -156,27 +147,22 @@ impl<'r> Policy<'r> {
 
     /// Appends the probabilities of a node's choices to those of the nodes above it.
     fn push_shares(&mut self, node: usize) {
-        let choices = self.parameters.plan.choices(node, self.now.state_type);
-        let random = self.settings.composite_choice == CompositeChoice::Random;
-        let Walk {
-            shares,
-            preferences,
-            probabilities,
+        let Self {
+            parameters,
+            now,
+            walk,
             ..
-        } = &mut self.walk;
+        } = self;
+        let choices = parameters.plan.choices(node, now.situation.state_type);
         let count = choices.len();
-        if count == 1 || random || self.parameters.plan.leads_to_one_primitive(choices) {
-            shares.resize(shares.len() + count, 1.0 / count as f64);
+        let random = parameters.settings.composite_choice == CompositeChoice::Random;
+        if count == 1 || random || parameters.plan.leads_to_one_primitive(choices) {
+            walk.shares
+                .resize(walk.shares.len() + count, 1.0 / count as f64);
             return;
         }
-        preferences.clear();
-        for &child in choices {
-            preferences.push(self.parameters.preference(&mut self.now, node, child));
-        }
-        probabilities.resize(count, 0.0);
-        let temperature = self.parameters.temperature(node);
-        self.softmax
-            .probabilities(preferences, temperature, probabilities);
-        shares.extend(probabilities.iter().copied().map(f64::from));
+        let (_, probabilities) = parameters.policy(now, node);
+        walk.shares
+            .extend(probabilities.iter().copied().map(f64::from));
     }
 }

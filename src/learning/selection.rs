@@ -10,6 +10,9 @@ use crate::scenario::LearningSettings;
 /// Lanes of a vector. There are few children and few actions: more lanes would mostly be
 /// empty.
 const LANES: usize = 8;
+/// Room for the most children and actions of the scenarios that the program ships. More take an
+/// allocation for each choice.
+const MANY: usize = 4 * LANES;
 
 /// The rule by which one of several children or actions is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,10 +52,14 @@ impl Softmax {
     #[inline]
     pub fn choose(&self, values: &[f32], temperature: f32, rng: &mut Stream) -> usize {
         let draw = rng.random::<f32>();
-        if values.len() > LANES {
-            return self.pick(values, &mut in_lanes(values), temperature, draw);
+        if values.len() <= LANES {
+            self.pick(values, &mut in_lanes::<LANES>(values), temperature, draw)
+        } else if values.len() <= MANY {
+            let lanes = &mut in_lanes::<MANY>(values)[..whole_lanes(values)];
+            self.pick(values, lanes, temperature, draw)
+        } else {
+            self.pick(values, &mut in_new_lanes(values), temperature, draw)
         }
-        self.pick(values, &mut few_in_lanes(values), temperature, draw)
     }
 
     /// Writes the probability of choosing each of `values` to `out`, and returns the rule.
@@ -62,10 +69,13 @@ impl Softmax {
         temperature: f32,
         out: &mut [f32],
     ) -> SelectionRule {
-        if values.len() > LANES {
-            self.weigh(values, &mut in_lanes(values), temperature, out)
+        if values.len() <= LANES {
+            self.weigh(values, &mut in_lanes::<LANES>(values), temperature, out)
+        } else if values.len() <= MANY {
+            let lanes = &mut in_lanes::<MANY>(values)[..whole_lanes(values)];
+            self.weigh(values, lanes, temperature, out)
         } else {
-            self.weigh(values, &mut few_in_lanes(values), temperature, out)
+            self.weigh(values, &mut in_new_lanes(values), temperature, out)
         }
     }
 
@@ -128,16 +138,21 @@ pub(super) fn uniform(draw: f32, count: usize) -> usize {
 }
 
 /// Returns the values in whole lanes. Empty lanes have probability 0.
-fn in_lanes(values: &[f32]) -> Vec<f32> {
+fn in_new_lanes(values: &[f32]) -> Vec<f32> {
     let mut lanes = values.to_vec();
-    lanes.resize(values.len().next_multiple_of(LANES), f32::NEG_INFINITY);
+    lanes.resize(whole_lanes(values), f32::NEG_INFINITY);
     lanes
 }
 
-/// The same for at most as many values as lanes, without an allocation.
+/// Returns the number of values, rounded up to whole vectors.
+fn whole_lanes(values: &[f32]) -> usize {
+    values.len().next_multiple_of(LANES)
+}
+
+/// The same for at most `N` values, without an allocation.
 #[inline(always)]
-fn few_in_lanes(values: &[f32]) -> [f32; LANES] {
-    let mut lanes = [f32::NEG_INFINITY; LANES];
+fn in_lanes<const N: usize>(values: &[f32]) -> [f32; N] {
+    let mut lanes = [f32::NEG_INFINITY; N];
     for (lane, value) in lanes.iter_mut().zip(values) {
         *lane = *value;
     }

@@ -5,8 +5,10 @@
 use super::features::{Encoder, Features};
 use super::hierarchy::CompositeValues;
 use super::linear::{self, Row};
-use super::plan::Plan;
+use super::plan::{Plan, Situation};
 use super::primitives::PrimitiveSet;
+use super::selection::{SelectionRule, Softmax};
+use crate::scenario::{CompositeChoice, CompositeReward, LearningSettings};
 use crate::worlds::StateType;
 
 /// Everything that an agent's values depend on: the learned parameters of its hierarchy and
@@ -14,6 +16,8 @@ use crate::worlds::StateType;
 #[derive(Clone, Debug)]
 pub(super) struct Parameters<'r> {
     pub(super) encoder: &'r Encoder,
+    pub(super) settings: &'r LearningSettings,
+    pub(super) softmax: Softmax,
     pub(super) plan: Plan,
     /// In the order of the nodes; `None` for primitive subtasks.
     pub(super) values: Vec<Option<CompositeValues>>,
@@ -40,7 +44,7 @@ struct ActionValues {
 /// One state with the values that were computed in it so far.
 #[derive(Clone, Debug)]
 pub(super) struct StateValues {
-    pub(super) state_type: StateType,
+    pub(super) situation: Situation,
     pub(super) features: Features,
     /// The number of the state. Cached values with another number are out of date.
     state: u64,
@@ -49,6 +53,10 @@ pub(super) struct StateValues {
     completions: Vec<[Cached; 2]>,
     /// V of each composite node.
     projected: Vec<Cached>,
+    /// Room for C~ + V of the children among which a node chooses.
+    preferences: Vec<f32>,
+    /// Room for the probabilities of choosing them.
+    probabilities: Vec<f32>,
 }
 
 /// Which of the two completion functions.
@@ -65,7 +73,10 @@ impl StateValues {
         let nodes = parameters.plan.nodes.len();
         let primitives = parameters.primitives.all().iter();
         Self {
-            state_type: terminal,
+            situation: Situation {
+                state_type: terminal,
+                remembers: false,
+            },
             features: parameters.encoder.features(),
             state: 0,
             primitives: primitives
@@ -78,13 +89,15 @@ impl StateValues {
                 .collect(),
             completions: vec![[Cached::default(); 2]; nodes],
             projected: vec![Cached::default(); nodes],
+            preferences: Vec::new(),
+            probabilities: Vec::new(),
         }
     }
 
     /// Loads another state.
     #[inline]
-    pub(super) fn load(&mut self, state_type: StateType, inputs: &[f32]) {
-        self.state_type = state_type;
+    pub(super) fn load(&mut self, situation: Situation, inputs: &[f32]) {
+        self.situation = situation;
         self.features.load(inputs);
         self.state += 1;
     }
@@ -92,6 +105,11 @@ impl StateValues {
     /// Forgets all values but not the features, because the primitive subtasks have changed.
     pub(super) fn forget_values(&mut self) {
         self.state += 1;
+    }
+
+    /// Returns the probability of one of the choices that [`Parameters::policy`] has weighed.
+    pub(super) fn probability(&self, choice: usize) -> f32 {
+        self.probabilities[choice]
     }
 
     /// Forgets what an update of the completion functions for `child` changes: their values,
@@ -107,7 +125,24 @@ impl StateValues {
     }
 }
 
-impl Parameters<'_> {
+impl<'r> Parameters<'r> {
+    pub(super) fn new(
+        encoder: &'r Encoder,
+        settings: &'r LearningSettings,
+        plan: Plan,
+        values: Vec<Option<CompositeValues>>,
+        primitives: PrimitiveSet,
+    ) -> Self {
+        Self {
+            encoder,
+            settings,
+            softmax: Softmax::new(settings),
+            plan,
+            values,
+            primitives,
+        }
+    }
+
     /// Returns Q_prim of all actions of a primitive subtask (Thesis Eq. 3.9).
     #[inline]
     pub(super) fn action_values<'s>(
@@ -137,7 +172,11 @@ impl Parameters<'_> {
     /// Returns V(i, s) of a node by Algorithm 2.5: chooses the child with C~, returns its
     /// value with C. The node must be able to act in the state.
     pub(super) fn projected_value(&self, now: &mut StateValues, node: usize) -> f32 {
-        if let Some(primitive) = self.plan.nodes[node].primitive {
+        if self.plan.nodes[node].primitive.is_some() {
+            if let CompositeReward::PerStep(reward) = self.settings.composite_reward {
+                return reward as f32;
+            }
+            let primitive = self.plan.acting(node, now.situation);
             self.evaluate_primitive(now, primitive);
             return now.primitives[primitive].best;
         }
@@ -159,7 +198,7 @@ impl Parameters<'_> {
     pub(super) fn best_child(&self, now: &mut StateValues, node: usize) -> (usize, f32) {
         let mut best = (node, 0.0);
         let mut highest = f32::NEG_INFINITY;
-        for &child in self.plan.choices(node, now.state_type) {
+        for &child in self.plan.choices(node, now.situation.state_type) {
             let projected = self.projected_value(now, child);
             let value = projected + self.completion(now, node, child, Completion::Inside);
             if value > highest {
@@ -176,6 +215,48 @@ impl Parameters<'_> {
         self.projected_value(now, child) + self.completion(now, node, child, Completion::Inside)
     }
 
+    /// Returns the probability of choosing each child that can act, and the rule. There must be
+    /// such a child.
+    #[inline]
+    pub(super) fn policy<'s>(
+        &self,
+        now: &'s mut StateValues,
+        node: usize,
+    ) -> (SelectionRule, &'s [f32]) {
+        let choices = self.plan.choices(node, now.situation.state_type);
+        let random = self.settings.composite_choice == CompositeChoice::Random;
+        now.probabilities.clear();
+        now.probabilities
+            .resize(choices.len(), 1.0 / choices.len() as f32);
+        let rule = match choices {
+            [_] => SelectionRule::OnlyChoice,
+            _ if random => SelectionRule::Uniform,
+            _ => {
+                self.compare(now, node);
+                let temperature = self.temperature(node);
+                let StateValues {
+                    preferences,
+                    probabilities,
+                    ..
+                } = now;
+                self.softmax
+                    .probabilities(preferences, temperature, probabilities)
+            }
+        };
+        (rule, &now.probabilities)
+    }
+
+    /// Returns C~ + V of each child that can act.
+    #[inline]
+    pub(super) fn compare<'s>(&self, now: &'s mut StateValues, node: usize) -> &'s [f32] {
+        now.preferences.clear();
+        for &child in self.plan.choices(node, now.situation.state_type) {
+            let preference = self.preference(now, node, child);
+            now.preferences.push(preference);
+        }
+        &now.preferences
+    }
+
     /// Returns C~(i, s, a) or C(i, s, a) for a child of a node (Thesis Eq. 3.7, 3.8).
     #[inline]
     pub(super) fn completion(
@@ -190,7 +271,7 @@ impl Parameters<'_> {
             return cached.value;
         }
         let plan = &self.plan.nodes[child].completion;
-        let offset = self.plan.block(child, now.state_type) + which as usize * plan.vector;
+        let offset = self.plan.block(child, now.situation) + which as usize * plan.vector;
         let parameters = self.parameters(node);
         let features = self.encoder.encode(plan.map, &mut now.features);
         let value = linear::value(&parameters[offset..offset + plan.stride], features);

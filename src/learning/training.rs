@@ -8,7 +8,7 @@ use super::linear::Row;
 use super::primitives::PrimitiveValues;
 use super::selection::{Softmax, uniform};
 use crate::random::Stream;
-use crate::scenario::LearningSettings;
+use crate::scenario::{LearningSettings, PrimitiveLearning};
 use crate::worlds::{Exploration, TrainingSettings};
 use crate::worlds::{SubtaskId, World};
 
@@ -20,7 +20,8 @@ use crate::worlds::{SubtaskId, World};
 /// fell at every step, it would be low before rare inputs had been seen, such as targets at
 /// the edge of the field of view.
 ///
-/// Where the world has no training for the subtask, it learns nothing.
+/// Where the world has no training for the subtask, it learns nothing. If it does not learn
+/// later either, its values are 0.
 #[derive(Debug)]
 pub struct PrimitiveTrainer<'t, W: World> {
     world: &'t W,
@@ -46,7 +47,13 @@ impl<'t, W: World> PrimitiveTrainer<'t, W> {
         subtask: SubtaskId,
         rng: Stream,
     ) -> Self {
-        let initial = settings.initial_parameter as f32;
+        let training = world.training(subtask);
+        let learns = settings.primitive_learning != PrimitiveLearning::Frozen;
+        let initial = if training.is_some() || learns {
+            settings.initial_parameter as f32
+        } else {
+            0.0
+        };
         let primitive = PrimitiveValues::new(subtask, world.catalogue(), initial);
         Self {
             world,
@@ -55,7 +62,7 @@ impl<'t, W: World> PrimitiveTrainer<'t, W> {
             softmax: Softmax::new(settings),
             rng,
             temperature: settings.initial_temperature as f32,
-            left: world.training(subtask).map_or(0, |training| training.steps),
+            left: training.map_or(0, |training| training.steps),
             features: encoder.features(),
             room: primitive.values(),
             primitive,

@@ -23,6 +23,11 @@ pub const INITIAL_PARAMETER: f64 = 0.123;
 /// Size of the negative pseudo-reward, Thesis 4.2.
 pub const PSEUDO_PENALTY: f64 = 1.0;
 
+/// Time steps for which a chosen primitive subtask acts: one (Thesis Algorithm 2.4).
+pub const PERSISTENCE: u32 = 1;
+/// Passes over a finished trial: none (Thesis Algorithm 2.4).
+pub const REPLAY: u32 = 0;
+
 /// Population size, Thesis Table 4.7.
 pub const POPULATION_SIZE: u16 = 16;
 /// Trials of each individual in a generation, Thesis Table 4.7. The second half is scored.

@@ -20,7 +20,7 @@ macro_rules! embedded {
 }
 
 /// All built-in scenarios: the files of `scenarios/`.
-pub const EMBEDDED: &[Embedded] = embedded!["scenarios": "cliff", "environment-1", "environment-2", "environment-3", "four-rooms", "smoke", "taxi", "taxi-fickle"];
+pub const EMBEDDED: &[Embedded] = embedded!["scenarios": "cliff", "environment-1", "environment-1-timed", "environment-2", "environment-2-timed", "environment-3", "environment-3-timed", "environment-4", "environment-5", "environment-6", "four-rooms", "smoke", "taxi", "taxi-fickle"];
 
 /// All built-in plans of studies: the files of `scenarios/studies/`. They use embedded
 /// scenarios only.

@@ -18,8 +18,8 @@ mod settings;
 
 pub use embedded::{EMBEDDED, EMBEDDED_PLANS, Embedded, names};
 pub use settings::{
-    CompositeChoice, CoolOn, EvolutionSettings, Inheritance, LearningSettings, PrimitiveLearning,
-    PseudoReward, Selection, Variation,
+    Bootstrap, CompositeChoice, CompositeReward, CoolOn, EvolutionSettings, ExitValue, Inheritance,
+    LearningSettings, PrimitiveLearning, PseudoReward, Reset, Selection, Variation,
 };
 
 /// The version of the scenario format that this program reads.

@@ -3,7 +3,7 @@
 //! The settings of a world are checked by the world. Rules on hierarchies need the world's
 //! subtasks and are checked where hierarchies are parsed, in `evolution`.
 
-use super::{EvolutionSettings, LearningSettings, PrimitiveLearning, Scenario};
+use super::{CompositeReward, EvolutionSettings, LearningSettings, PrimitiveLearning, Scenario};
 use crate::rules::{Check, Problem};
 
 /// Longest hierarchy, in bytes: it bounds the work that a hostile file can cause.
@@ -57,6 +57,20 @@ fn learning(check: &mut Check, learning: &LearningSettings, trained: bool) {
             -1000.0..=1000.0,
         ),
     ]);
+    if let Some(temperature) = learning.composite_temperature {
+        check.range("composite_temperature", temperature, lowest..=1000.0);
+    }
+    if let CompositeReward::PerStep(reward) = learning.composite_reward {
+        let holds = (-1000.0..0.0).contains(&reward);
+        check.rule(
+            holds,
+            "composite_reward.per_step",
+            reward,
+            "-1000 to less than 0",
+        );
+    }
+    check.range("persistence", learning.persistence, 1..=1000);
+    check.range("replay", learning.replay, 0..=100);
 }
 
 fn evolution(check: &mut Check, evolution: &EvolutionSettings) {
@@ -84,6 +98,9 @@ fn evolution(check: &mut Check, evolution: &EvolutionSettings) {
     );
     check.range("maximum_depth", evolution.maximum_depth, 2..=8);
     check.range("generation_limit", evolution.generation_limit, 1..=100_000);
+    if let Some(limit) = evolution.control_step_limit {
+        check.range("control_step_limit", limit, 1..=1_000_000_000_000_u64);
+    }
     check.range("trial_step_limit", evolution.trial_step_limit, 1..=100_000);
     check.ranges([
         ("prune_probability", evolution.prune_probability, 0.0..=1.0),

@@ -22,8 +22,11 @@ pub struct LearningSettings {
     pub initial_temperature: f64,
     /// Lower limit of the temperature.
     pub temperature_limit: f64,
-    /// Factor by which a composite subtask's temperature is multiplied when the subtask
-    /// terminates.
+    /// Initial temperature of composite subtasks, where it is another one; `null` for
+    /// `initial_temperature`.
+    pub composite_temperature: Option<f64>,
+    /// Factor by which a composite subtask's temperature is multiplied when it falls
+    /// (`cool_on`).
     pub temperature_decrease: f64,
     /// Largest softmax probability (rho limit) up to which selection is softmax; above it,
     /// selection is epsilon-greedy.
@@ -36,13 +39,26 @@ pub struct LearningSettings {
     #[serde(skip_serializing, deserialize_with = "only_next_state")]
     #[schemars(skip)]
     completion_bootstrap: (),
-    /// Terminations on which a composite subtask's temperature falls.
+    /// When a composite subtask's temperature falls.
     pub cool_on: CoolOn,
     /// Transitions that carry a negative pseudo-reward.
     pub pseudo_reward: PseudoReward,
     /// Size of the negative pseudo-reward. A subtask learns to fail rather than to reach its
     /// goal at a higher cost than this.
     pub pseudo_penalty: f64,
+    /// What composite subtasks are rewarded for.
+    pub composite_reward: CompositeReward,
+    /// What the state in which a composite subtask terminates is worth to it.
+    pub exit_value: ExitValue,
+    /// The value of the next state from which composite subtasks learn.
+    pub bootstrap: Bootstrap,
+    /// Time steps for which a primitive subtask acts once it was chosen, while the state type
+    /// stays the same. With more than 1 the difference between two children becomes larger than
+    /// its noise (Baird 1993; Tallec et al. 2019).
+    pub persistence: u32,
+    /// Times that all updates of a finished trial are repeated, the last decision first
+    /// (Lin 1992).
+    pub replay: u32,
     /// How a composite subtask chooses among its children.
     pub composite_choice: CompositeChoice,
     /// Whether and how primitive subtasks learn during evolution.
@@ -56,6 +72,7 @@ impl Default for LearningSettings {
             discount: d::DISCOUNT,
             initial_temperature: d::INITIAL_TEMPERATURE,
             temperature_limit: d::TEMPERATURE_LIMIT,
+            composite_temperature: None,
             temperature_decrease: d::TEMPERATURE_DECREASE,
             probability_limit: d::PROBABILITY_LIMIT,
             epsilon: d::EPSILON,
@@ -64,6 +81,11 @@ impl Default for LearningSettings {
             cool_on: CoolOn::default(),
             pseudo_reward: PseudoReward::default(),
             pseudo_penalty: d::PSEUDO_PENALTY,
+            composite_reward: CompositeReward::default(),
+            exit_value: ExitValue::default(),
+            bootstrap: Bootstrap::default(),
+            persistence: d::PERSISTENCE,
+            replay: d::REPLAY,
             composite_choice: CompositeChoice::default(),
             primitive_learning: PrimitiveLearning::default(),
         }
@@ -82,7 +104,16 @@ fn only_next_state<'de, D: Deserializer<'de>>(json: D) -> Result<(), D::Error> {
     )))
 }
 
-/// The terminations on which the temperature of a composite subtask falls.
+impl LearningSettings {
+    /// Returns the initial temperature of composite subtasks.
+    #[must_use]
+    pub fn initial_composite_temperature(&self) -> f64 {
+        self.composite_temperature
+            .unwrap_or(self.initial_temperature)
+    }
+}
+
+/// When the temperature of a composite subtask falls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CoolOn {
@@ -91,6 +122,47 @@ pub enum CoolOn {
     Termination,
     /// Only terminations in a goal state (Dietterich 2000).
     Goal,
+    /// The end of each trial, once for every composite subtask. A subtask that terminates often
+    /// would otherwise be cold before it has seen much.
+    Trial,
+}
+
+/// What composite subtasks are rewarded for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CompositeReward {
+    /// What their primitive subtasks are rewarded for (Thesis Eq. 3.2).
+    #[default]
+    Subtask,
+    /// Time: this reward, below 0, for every time step, whatever primitive subtask acts. The
+    /// primitive subtasks keep their own rewards.
+    PerStep(f64),
+}
+
+/// What the state in which a composite subtask terminates is worth to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExitValue {
+    /// Its pseudo-reward (Thesis Definition 2.1).
+    #[default]
+    PseudoReward,
+    /// What follows: the value of the state to the subtask that goes on, the first on the way up
+    /// the call stack. Subtasks then learn policies that are optimal in their hierarchy
+    /// (Parr and Russell 1998; Andre and Russell 2002).
+    Continuation,
+}
+
+/// The value of the next state from which composite subtasks learn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Bootstrap {
+    /// That of the child with the largest C~ + V (Thesis Algorithm 2.4).
+    #[default]
+    Greedy,
+    /// The mean over the children that can act, weighted with the probabilities of choosing them
+    /// (expected Sarsa: van Seijen et al. 2009). The largest of noisy values is too large (van
+    /// Hasselt 2010).
+    Expected,
 }
 
 /// The transitions that carry a negative pseudo-reward. Transitions into a goal state carry
@@ -154,6 +226,13 @@ pub struct EvolutionSettings {
     /// Generations after which evolution ends even if it has not converged.
     #[serde(default = "constant::<u64, { d::GENERATION_LIMIT }>")]
     pub generation_limit: u64,
+    /// Control steps, with those of the training of primitive subtasks, after which evolution
+    /// ends with the generation that reaches them; `null` for no limit.
+    #[serde(default)]
+    pub control_step_limit: Option<u64>,
+    /// Whether evolution ends when the better half of the population has one structure.
+    #[serde(default = "yes")]
+    pub stop_on_convergence: bool,
     /// Time steps after which a trial is truncated.
     #[serde(default = "constant::<u32, { d::TRIAL_STEP_LIMIT }>")]
     pub trial_step_limit: u32,
@@ -166,6 +245,9 @@ pub struct EvolutionSettings {
     /// What offspring inherit.
     #[serde(default)]
     pub inheritance: Inheritance,
+    /// Which inherited values crossover and growth reset.
+    #[serde(default)]
+    pub reset: Reset,
     /// How new hierarchies are made.
     #[serde(default)]
     pub variation: Variation,
@@ -186,6 +268,10 @@ pub struct EvolutionSettings {
 /// Returns `VALUE`, as the default of a field of any number type.
 fn constant<T: From<u16>, const VALUE: u16>() -> T {
     T::from(VALUE)
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// How the individuals of a generation are ranked.
@@ -209,6 +295,18 @@ pub enum Inheritance {
     Lamarckian,
     /// Nothing: all parameters and temperatures start from their initial values.
     Darwinian,
+}
+
+/// Which inherited values start from their initial values where a composite subtask gets a new
+/// child.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Reset {
+    /// All of the composite subtasks from the new child's parent to the root (Thesis 3.2).
+    #[default]
+    Path,
+    /// The parent's completion functions for the new child only.
+    Child,
 }
 
 /// How the hierarchies of the next generation are made.

@@ -1,8 +1,8 @@
 //! Makes the catalogues of the worlds: ids come from lists of names.
 
 use super::catalogue::{
-    Blocks, Catalogue, FeatureKind, FeatureMap, Kind, MapId, StateType, StateTypeInfo, StateTypes,
-    Subtask, SubtaskId,
+    Blocks, Catalogue, FeatureKind, FeatureMap, Imitation, Kind, MapId, StateType, StateTypeInfo,
+    StateTypes, Subtask, SubtaskId,
 };
 
 /// Lists names, and defines constants that hold their ids: their places in the list. A name
@@ -48,16 +48,18 @@ pub(super) struct CatalogueBuilder {
 
 impl CatalogueBuilder {
     /// Starts a catalogue with these names. The terminal state type is the last of its list.
-    pub(super) fn new(
+    pub(super) fn new<'n>(
         blocks: Blocks,
         state_types: &[&str],
-        subtasks: &[&str],
+        subtasks: impl IntoIterator<Item = &'n str>,
         maps: &[&str],
     ) -> Self {
         let (_terminal, others) = state_types.split_last().unwrap_or((&"", &[]));
-        let subtasks = owned(subtasks).map(|name| Subtask {
+        let names = subtasks.into_iter().map(String::from);
+        let subtasks = names.map(|name| Subtask {
             kind: Kind::Primitive {
                 actions: vec![name.to_lowercase()],
+                imitates: None,
             },
             name,
             purpose: String::new(),
@@ -75,6 +77,7 @@ impl CatalogueBuilder {
                     .collect(),
                 subtasks: subtasks.collect(),
                 maps: maps.collect(),
+                memory: None,
             },
             blocks,
         }
@@ -101,7 +104,30 @@ impl CatalogueBuilder {
 
     /// Gives a primitive subtask several actions.
     pub(super) fn actions(&mut self, id: SubtaskId, actions: Vec<String>) {
-        self.catalogue.subtasks[id.index()].kind = Kind::Primitive { actions };
+        self.catalogue.subtasks[id.index()].kind = Kind::Primitive {
+            actions,
+            imitates: None,
+        };
+    }
+
+    /// Takes a primitive subtask's actions away: it uses those of others.
+    pub(super) fn imitation(&mut self, id: SubtaskId, imitation: Imitation) {
+        self.catalogue.subtasks[id.index()].kind = Kind::Primitive {
+            actions: Vec::new(),
+            imitates: Some(imitation),
+        };
+    }
+
+    /// Lets an input tell whether the agent remembers the place that its task needs.
+    pub(super) fn memory(&mut self, input: usize) {
+        self.catalogue.memory = Some(input);
+    }
+
+    /// Sets how the completion functions of a composite subtask depend on the type of a state.
+    pub(super) fn blocks(&mut self, id: SubtaskId, by: Blocks) {
+        if let Kind::Composite { blocks, .. } = &mut self.catalogue.subtasks[id.index()].kind {
+            *blocks = by;
+        }
     }
 
     /// Describes a composite subtask.

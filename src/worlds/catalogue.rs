@@ -200,6 +200,9 @@ pub enum Blocks {
     /// One-hot: a block of features for each state type that the subtask is active in
     /// (Thesis 4.2).
     PerStateType,
+    /// One-hot, once for states in which the agent remembers the place that its task needs,
+    /// and once for the others ([`Catalogue::memory`]).
+    PerStateTypeAndMemory,
     /// Not at all: one block for all state types.
     One,
 }
@@ -224,7 +227,18 @@ pub enum Kind {
     Primitive {
         /// What each action does, in words.
         actions: Vec<String>,
+        /// Whose place it takes, if it has no actions of its own.
+        imitates: Option<Imitation>,
     },
+}
+
+/// The subtasks whose values and actions a primitive subtask uses instead of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imitation {
+    /// The subtask for each state type, while the agent remembers the place that its task needs.
+    pub with_memory: Vec<(StateType, SubtaskId)>,
+    /// The subtask in all other states.
+    pub otherwise: SubtaskId,
 }
 
 /// A subtask that a world provides.
@@ -249,11 +263,12 @@ impl Subtask {
         matches!(self.kind, Kind::Composite { .. })
     }
 
-    /// Returns the number of actions: 0 for a composite subtask.
+    /// Returns the number of actions: 0 for a composite subtask, and for a primitive one that
+    /// imitates others.
     #[must_use]
     pub fn actions(&self) -> usize {
         match &self.kind {
-            Kind::Primitive { actions } => actions.len(),
+            Kind::Primitive { actions, .. } => actions.len(),
             Kind::Composite { .. } => 0,
         }
     }
@@ -262,21 +277,29 @@ impl Subtask {
     /// subtask.
     #[must_use]
     pub fn blocks(&self) -> usize {
-        match self.kind {
-            Kind::Composite {
-                blocks: Blocks::PerStateType,
-                ..
-            } => self.active.len(),
-            _ => 1,
+        let types = self.active.len();
+        match self.blocks_by() {
+            Blocks::PerStateType => types,
+            Blocks::PerStateTypeAndMemory => 2 * types,
+            Blocks::One => 1,
         }
     }
 
-    /// Returns the block of a state type.
+    /// Returns the block of a state type, in states with or without a remembered place.
     #[must_use]
-    pub fn block(&self, state_type: StateType) -> usize {
-        match self.blocks() {
-            1 => 0,
-            _ => self.active.rank(state_type),
+    pub fn block(&self, state_type: StateType, remembers: bool) -> usize {
+        let rank = self.active.rank(state_type);
+        match self.blocks_by() {
+            Blocks::PerStateType => rank,
+            Blocks::PerStateTypeAndMemory => rank + usize::from(remembers) * self.active.len(),
+            Blocks::One => 0,
+        }
+    }
+
+    fn blocks_by(&self) -> Blocks {
+        match self.kind {
+            Kind::Composite { blocks, .. } => blocks,
+            Kind::Primitive { .. } => Blocks::One,
         }
     }
 
@@ -306,6 +329,9 @@ pub struct Catalogue {
     pub subtasks: Vec<Subtask>,
     /// The feature maps.
     pub maps: Vec<FeatureMap>,
+    /// The input that is 1 while the agent remembers the place that its task needs, and 0
+    /// otherwise; `None` in a world where agents have no memory.
+    pub memory: Option<usize>,
 }
 
 impl Catalogue {
@@ -334,6 +360,35 @@ impl Catalogue {
     /// Returns the primitive subtasks in order.
     pub fn primitives(&self) -> impl Iterator<Item = SubtaskId> + '_ {
         self.ids().filter(|&id| !self.subtask(id).is_composite())
+    }
+
+    /// Returns whether the agent remembers the place that its task needs.
+    #[must_use]
+    pub fn remembers(&self, percept: &[f32]) -> bool {
+        self.memory.is_some_and(|input| percept[input] > 0.5)
+    }
+
+    /// Returns the primitive subtask whose values and actions `primitive` uses in a state:
+    /// itself, unless it imitates others.
+    #[must_use]
+    pub fn acts_as(
+        &self,
+        primitive: SubtaskId,
+        state_type: StateType,
+        remembers: bool,
+    ) -> SubtaskId {
+        let Kind::Primitive {
+            imitates: Some(imitation),
+            ..
+        } = &self.subtask(primitive).kind
+        else {
+            return primitive;
+        };
+        let recalled = imitation.with_memory.iter().filter(|_| remembers);
+        let mut recalled = recalled.filter(|(of, _)| *of == state_type);
+        recalled
+            .next()
+            .map_or(imitation.otherwise, |&(_, subtask)| subtask)
     }
 
     /// Returns one capital letter for each primitive subtask: the first of its capitals that no

@@ -11,8 +11,8 @@ pub mod scene;
 mod training;
 
 pub use catalogue::{
-    Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Index, Kind, MapId, StateType, StateTypeInfo,
-    StateTypes, Subtask, SubtaskId,
+    Axis, Blocks, Catalogue, FeatureKind, FeatureMap, Imitation, Index, Kind, MapId, StateType,
+    StateTypeInfo, StateTypes, Subtask, SubtaskId,
 };
 pub use settings::{Settings, WorldFn};
 pub use training::{Exploration, TrainingSettings};

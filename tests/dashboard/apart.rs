@@ -2,6 +2,7 @@
 
 use maxq_lab::dashboard::Effect;
 use maxq_lab::hierarchy::Glyphs::{Ascii, Unicode};
+use maxq_lab::learning::Exit;
 
 use super::frames::{LARGE, MIDDLE, SMALL, assert_shots};
 use super::recorded::{Screen, cells, foraging};
@@ -174,7 +175,9 @@ fn every_part_of_a_step_is_on_the_screen() {
             name(update_trace.child)
         );
         assert!(text.contains(&told), "{told} in\n{text}");
-        assert!(text.contains(&format!("pseudo-reward {}", update_trace.pseudo_reward)));
+        if let Exit::PseudoReward(reward) = update_trace.exit {
+            assert!(text.contains(&format!("pseudo-reward {reward}")));
+        }
         assert!(text.contains(&format!("N {}", update_trace.updates[0].steps)));
     }
     assert!(text.contains(&format!("reward {:.3}", trace.explanation.reward)));

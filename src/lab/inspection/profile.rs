@@ -60,7 +60,7 @@ pub(in crate::lab) fn profiles<W: Scenic>(
         return Vec::new();
     };
     match &world.catalogue().subtask(subtask).kind {
-        Kind::Primitive { actions } => action_profiles(world, subtask, actions, policy),
+        Kind::Primitive { actions, .. } => action_profiles(world, subtask, actions, policy),
         Kind::Composite { .. } => {
             let types = world.catalogue().subtask(subtask).active.iter();
             types

@@ -51,7 +51,7 @@ fn chart(experiment: &dyn AnyExperiment, primitive: &PrimitiveValues) -> Option<
         (input(first)?, reading(first)?),
         (input(last)?, reading(last)?),
     ];
-    let Kind::Primitive { actions } = &subtask.kind else {
+    let Kind::Primitive { actions, .. } = &subtask.kind else {
         return None;
     };
     let mut lines = vec![Vec::with_capacity(POINTS); actions.len()];

@@ -41,7 +41,8 @@ pub(super) const ACTIONS: [SubtaskId; 4] = [UP, DOWN, RIGHT, LEFT];
 pub(super) const INPUTS: usize = 3;
 
 pub(super) fn catalogue(cells: Cells, settings: &CliffSettings) -> Catalogue {
-    let mut builder = CatalogueBuilder::new(Blocks::One, STATE_TYPES, SUBTASKS, MAPS);
+    let mut builder =
+        CatalogueBuilder::new(Blocks::One, STATE_TYPES, SUBTASKS.iter().copied(), MAPS);
     let all = [AT_START, ABOVE, LAST];
     let walk = "walk from the start to the goal";
     builder.composite(ROOT, walk, CELL, all, [AT_GOAL], 0);

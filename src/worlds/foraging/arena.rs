@@ -24,6 +24,8 @@ pub struct Wall {
     pub start: Point2<f64>,
     /// From one end to the other, in millimetres.
     pub span: Vector2<f64>,
+    /// Whether the robot sees through it.
+    pub transparent: bool,
     /// Length in millimetres.
     pub(super) length: f64,
     /// The span over its squared length.
@@ -41,6 +43,7 @@ impl Wall {
         Self {
             start,
             span,
+            transparent: false,
             length: span.norm(),
             shares: span / span.norm_squared(),
         }
@@ -128,12 +131,16 @@ impl Arena {
             [0.0, height, 0.0, 0.0],
         ];
         let fences = settings.fences.iter().flat_map(|fence| fence.pieces());
-        let walls = outer
+        let opaque = outer
             .into_iter()
             .chain(settings.walls_mm.iter().copied())
             .chain(fences)
-            .map(Wall::new)
-            .collect();
+            .map(Wall::new);
+        let transparent = settings.transparent_walls_mm.iter().map(|&wall| Wall {
+            transparent: true,
+            ..Wall::new(wall)
+        });
+        let walls = opaque.chain(transparent).collect();
         let cell_side = width.max(height) / CELLS as f64;
         let mut arena = Self {
             size: Vector2::new(width, height),
@@ -178,7 +185,7 @@ impl Arena {
         self.list(position, 1)
     }
 
-    /// Returns whether no wall stands between `position` and a target.
+    /// Returns whether no opaque wall stands between `position` and a target.
     pub(super) fn in_sight(&self, position: Point2<f64>, target: usize) -> bool {
         let centre = self.target(target);
         !self
@@ -223,7 +230,9 @@ impl Arena {
                 }
                 for target in 0..=self.batteries.len() {
                     let target = self.target(target);
-                    self.list_where(|wall| wall.distance_to_line(centre, target) <= half_diagonal);
+                    self.list_where(|wall| {
+                        !wall.transparent && wall.distance_to_line(centre, target) <= half_diagonal
+                    });
                 }
             }
         }

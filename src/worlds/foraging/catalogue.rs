@@ -1,8 +1,9 @@
 //! The subtasks of the foraging task (Thesis Tables 4.1 to 4.3 and 4.6).
 
+use super::defaults::COMMANDS;
 use super::{FeatureSettings, ForagingSettings, RbfWidth};
 use crate::worlds::builder::CatalogueBuilder;
-use crate::worlds::{Axis, Blocks, Catalogue, FeatureKind, MapId, StateType, SubtaskId};
+use crate::worlds::{Axis, Blocks, Catalogue, FeatureKind, Imitation, MapId, StateType, SubtaskId};
 
 numbered! {
     STATE_TYPES: StateType {
@@ -37,6 +38,7 @@ numbered! {
         TARGET_MAP = "angle x distance x proximity",
         APPROACH_MAP = "angle, to approach",
         TURN_MAP = "angle, to turn",
+        NOTHING_MAP = "nothing",
     }
 }
 
@@ -46,14 +48,23 @@ pub const PROXIMITY_SENSORS: usize = 5;
 pub const ANGLE: usize = PROXIMITY_SENSORS;
 /// Input: distance to the target.
 pub const DISTANCE: usize = PROXIMITY_SENSORS + 1;
+/// Input: whether the robot remembers the place that its task needs.
+pub const REMEMBERS: usize = PROXIMITY_SENSORS + 2;
 /// Number of inputs.
-pub const INPUTS: usize = PROXIMITY_SENSORS + 2;
+pub const INPUTS: usize = PROXIMITY_SENSORS + 3;
+
+/// The subtask that goes to a remembered place.
+const RECALL: &str = "Recall";
 
 /// The catalogue of the foraging task with the scenario's actions and features.
 pub(super) fn catalogue(settings: &ForagingSettings) -> Catalogue {
     use {BATTERY_VISIBLE as B, CARRYING as C, DELIVERED as D, NEST_VISIBLE as N, SEARCHING as S};
     use {PROXIMITY_MAP as P, TARGET_MAP as T};
-    let mut b = CatalogueBuilder::new(Blocks::PerStateType, STATE_TYPES, SUBTASKS, MAPS);
+    let commands = COMMANDS.iter().filter(|_| settings.commands);
+    let names = SUBTASKS.iter().copied();
+    let names = names.chain(commands.clone().map(|(name, _)| *name));
+    let names = names.chain(settings.memory.iter().map(|_| RECALL));
+    let mut b = CatalogueBuilder::new(Blocks::PerStateType, STATE_TYPES, names, MAPS);
     let all = [S, B, C, N];
     b.composite(ROOT, "solve the overall task", P, all, [D], 0);
     let purpose = "find, approach and capture a battery";
@@ -82,13 +93,42 @@ pub(super) fn catalogue(settings: &ForagingSettings) -> Catalogue {
         (APPROACH_NEST, &p.approach_nest.actions_mm_per_s),
         (TURN, &p.turn.actions_mm_per_s),
     ] {
-        let words = actions
-            .iter()
-            .map(|[right, left]| format!("({right},{left})"));
-        b.actions(primitive, words.collect());
+        b.actions(primitive, actions.iter().map(in_words).collect());
+    }
+    let mut next = SubtaskId(SUBTASKS.len() as u8);
+    for (_, speeds) in commands {
+        b.primitive(next, "give one command to the wheels", NOTHING_MAP, all);
+        b.actions(next, vec![in_words(speeds)]);
+        next.0 += 1;
+    }
+    if settings.memory.is_some() {
+        add_memory(&mut b, next);
     }
     add_maps(&mut b, &settings.features);
     b.finish()
+}
+
+/// Adds the memory of the robot: the subtask Recall, and blocks of features for the composite
+/// subtasks that do not see their target.
+fn add_memory(b: &mut CatalogueBuilder, recall: SubtaskId) {
+    b.memory(REMEMBERS);
+    let purpose = "go to the remembered battery or nest";
+    b.primitive(recall, purpose, NOTHING_MAP, [SEARCHING, CARRYING]);
+    let with_memory = vec![(SEARCHING, APPROACH_BATTERY), (CARRYING, APPROACH_NEST)];
+    b.imitation(
+        recall,
+        Imitation {
+            with_memory,
+            otherwise: WANDER,
+        },
+    );
+    for composite in [ROOT, CAPTURE, DELIVER, FIND_BATTERY, FIND_NEST] {
+        b.blocks(composite, Blocks::PerStateTypeAndMemory);
+    }
+}
+
+fn in_words([right, left]: &[f64; 2]) -> String {
+    format!("({right},{left})")
 }
 
 fn add_maps(b: &mut CatalogueBuilder, features: &FeatureSettings) {

@@ -57,6 +57,19 @@ pub const TURN_ACTIONS: [[f64; 2]; 4] = [
     [-200.0, 200.0],
     [200.0, -200.0],
 ];
+/// Names and (right, left) wheel speeds in mm/s of the commands, each of which is a primitive
+/// subtask of one action (Thesis 3.1). The thesis gives no list; these are the movements of
+/// Wander, a turn on the spot to either side, and a way back.
+pub const COMMANDS: [(&str, [f64; 2]); 8] = [
+    ("Forward", [600.0, 600.0]),
+    ("Left", [600.0, 400.0]),
+    ("Right", [400.0, 600.0]),
+    ("HardLeft", [600.0, 100.0]),
+    ("HardRight", [100.0, 600.0]),
+    ("SpinLeft", [300.0, -300.0]),
+    ("SpinRight", [-300.0, 300.0]),
+    ("Back", [-300.0, -300.0]),
+];
 /// Rewards of Avoid's actions, Thesis Eq. 4.1.
 pub const AVOID_REWARDS: [f64; 5] = [-0.5, -0.5, -0.75, -0.75, -0.875];
 /// Rewards of Wander's actions, Thesis Eq. 4.1.

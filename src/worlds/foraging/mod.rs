@@ -8,6 +8,7 @@ mod arena;
 mod catalogue;
 pub mod defaults;
 mod free_space;
+mod memory;
 mod motion;
 mod probes;
 mod rays;
@@ -20,16 +21,19 @@ mod settings;
 pub use arena::{Arena, Wall};
 pub use catalogue::{
     ANGLE, APPROACH_BATTERY, APPROACH_NEST, AVOID, BATTERY_VISIBLE, CARRYING, DELIVERED, DISTANCE,
-    INPUTS, NEST_VISIBLE, PROXIMITY_SENSORS, SEARCHING, TURN, WANDER,
+    INPUTS, NEST_VISIBLE, PROXIMITY_SENSORS, REMEMBERS, SEARCHING, TURN, WANDER,
 };
+pub use memory::Memory;
 pub use sensors::TargetReading;
 pub use settings::{
-    ArenaSettings, FeatureSettings, FenceSettings, ForagingSettings, MovementSettings,
-    PrimitiveSettings, PrimitiveTraining, RbfWidth, RobotSettings, SensorSettings, TargetSettings,
+    ArenaSettings, FeatureSettings, FenceSettings, ForagingSettings, MemorySettings,
+    MovementSettings, PrimitiveSettings, PrimitiveTraining, RbfWidth, RobotSettings,
+    SensorSettings, TargetSettings,
 };
 
 use arena::Reach;
-use motion::{Arc, slide};
+use memory::{Movement, angle_deg, look};
+use motion::{Arc, rotate, slide};
 use reach::{Body, Survey};
 use sensors::{Sensors, Sighting};
 
@@ -71,6 +75,10 @@ pub struct ForagingState {
     pub proximity_mm: [f32; PROXIMITY_SENSORS],
     /// The reading of the target, if one is visible.
     pub target: Option<TargetReading>,
+    /// What it remembers of the arena; nothing in a robot without memory.
+    pub memory: Memory,
+    /// The remembered place of a target out of sight, with the noise of a reading.
+    pub recalled: Option<TargetReading>,
 }
 
 /// The reward of a primitive subtask (Thesis Eq. 4.1).
@@ -84,6 +92,8 @@ enum Reward {
         divisor_deg: f32,
         failure: f32,
     },
+    /// There is none: a command.
+    Zero,
 }
 
 /// The actions of a primitive subtask, their rewards, and its training.
@@ -91,7 +101,7 @@ enum Reward {
 struct Primitive {
     arcs: Vec<Arc>,
     reward: Reward,
-    training: TrainingSettings,
+    training: Option<TrainingSettings>,
 }
 
 /// The foraging world of a scenario.
@@ -104,8 +114,9 @@ pub struct ForagingWorld {
     capture_distance: f64,
     delivery_distance: f64,
     time_step_s: f64,
-    /// Avoid, Wander, Approach battery, Approach nest, Turn.
-    primitives: [Primitive; 5],
+    /// Avoid, Wander, Approach battery, Approach nest, Turn, and the commands.
+    primitives: Vec<Primitive>,
+    memory: Option<MemorySettings>,
     /// A free pose, for a crowded arena in which a search fails.
     some_pose: Pose,
     /// What is odd about the arena.
@@ -137,6 +148,7 @@ impl ForagingWorld {
             delivery_distance: settings.robot.delivery_distance_mm,
             time_step_s: settings.time_step_s,
             primitives,
+            memory: settings.memory.clone(),
             some_pose: Pose {
                 position: Point2::origin(),
                 heading: Vector2::x(),
@@ -221,6 +233,44 @@ impl ForagingWorld {
             task,
             proximity_mm: self.sensors.proximity(&self.arena, position, heading, rng),
             target: seen.map(|sighting| self.sensors.read(&sighting, rng)),
+            memory: Memory::default(),
+            recalled: None,
+        }
+    }
+
+    /// Brings the memory of a robot up to date with what it sees in `state`. An empty-handed
+    /// robot looks for the nest too, which takes one more reading.
+    fn remember(&self, state: &mut ForagingState, mut memory: Memory, rng: &mut Stream) {
+        let searches = state.task == Task::EmptyHanded;
+        let nest = if searches {
+            look(&mut memory.battery, state.target);
+            let (arena, pose) = (&self.arena, &state.pose);
+            let nest = arena.nest_index();
+            let seen = self.sensors.see(arena, pose.position, pose.heading, nest);
+            seen.map(|sighting| self.sensors.read(&sighting, rng))
+        } else {
+            state.target
+        };
+        look(&mut memory.nest, nest);
+        state.memory = memory;
+        let place = if searches {
+            memory.battery
+        } else {
+            memory.nest
+        };
+        let hidden = place.filter(|_| state.target.is_none());
+        state.recalled = hidden.map(|place| {
+            let distance = place.norm();
+            self.sensors.recall(angle_deg(place), distance, rng)
+        });
+    }
+
+    /// Returns the movement between two poses, in the frame of the first.
+    fn movement(before: &Pose, after: &Pose) -> Movement {
+        let back = Vector2::new(before.heading.x, -before.heading.y);
+        Movement {
+            displacement: rotate(after.position - before.position, back),
+            heading: rotate(after.heading, back),
         }
     }
 
@@ -233,8 +283,20 @@ impl ForagingWorld {
         }
     }
 
-    fn primitive(&self, id: SubtaskId) -> &Primitive {
-        &self.primitives[id.index() - AVOID.index()]
+    /// Returns what a subtask does; `None` for Recall, which imitates others.
+    fn primitive(&self, id: SubtaskId) -> Option<&Primitive> {
+        self.primitives.get(id.index() - AVOID.index())
+    }
+
+    /// Returns what a subtask does in a state.
+    fn acting(&self, id: SubtaskId, state: &ForagingState) -> &Primitive {
+        let remembers = state.recalled.is_some();
+        let acts_as = |id| {
+            self.catalogue
+                .acts_as(id, self.state_type(state), remembers)
+        };
+        let own = self.primitive(id);
+        own.unwrap_or_else(|| &self.primitives[acts_as(id).index() - AVOID.index()])
     }
 
     fn reward(
@@ -260,10 +322,11 @@ impl ForagingWorld {
             } => target.map_or(*failure, |target| {
                 offset - target.angle_deg.abs() / divisor_deg
             }),
+            Reward::Zero => 0.0,
         }
     }
 
-    /// Scales readings to [0, 1]. Without a visible target its inputs are 0.
+    /// Scales readings to [0, 1]. Without a target its inputs are 0.
     fn inputs(
         &self,
         proximity_mm: &[f32; PROXIMITY_SENSORS],
@@ -282,12 +345,27 @@ impl ForagingWorld {
         inputs
     }
 
+    /// Returns the memory of a robot that has seen a random battery and the nest before, with
+    /// probability 1/2 each.
+    fn some_memory(&self, pose: &Pose, rng: &mut Stream) -> Memory {
+        let back = Vector2::new(pose.heading.x, -pose.heading.y);
+        let battery = rng.random_range(0..self.arena.batteries.len());
+        let mut place = |target| {
+            let offset = self.arena.target(target) - pose.position;
+            rng.random::<bool>().then(|| rotate(offset, back))
+        };
+        Memory {
+            battery: place(battery),
+            nest: place(self.arena.nest_index()),
+        }
+    }
+
     fn is_target_seeking(primitive: SubtaskId) -> bool {
         matches!(primitive, APPROACH_BATTERY | APPROACH_NEST | TURN)
     }
 }
 
-fn primitives(settings: &ForagingSettings) -> [Primitive; 5] {
+fn primitives(settings: &ForagingSettings) -> Vec<Primitive> {
     let arcs = |actions: &[[f64; 2]]| {
         let arc = |&speeds| Arc::new(speeds, settings.robot.wheel_base_mm, settings.time_step_s);
         actions.iter().map(arc).collect()
@@ -302,7 +380,7 @@ fn primitives(settings: &ForagingSettings) -> [Primitive; 5] {
                 .collect(),
             failure: subtask.failure_reward as f32,
         },
-        training: training.clone(),
+        training: Some(training.clone()),
     };
     let target = |subtask: &TargetSettings, training: &TrainingSettings| Primitive {
         arcs: arcs(&subtask.actions_mm_per_s),
@@ -311,16 +389,23 @@ fn primitives(settings: &ForagingSettings) -> [Primitive; 5] {
             divisor_deg: subtask.reward_divisor_deg as f32,
             failure: subtask.failure_reward as f32,
         },
-        training: training.clone(),
+        training: Some(training.clone()),
     };
+    let commands = defaults::COMMANDS.iter().filter(|_| settings.commands);
+    let commands = commands.map(|(_, speeds)| Primitive {
+        arcs: arcs(&[*speeds]),
+        reward: Reward::Zero,
+        training: None,
+    });
     let (p, t) = (&settings.primitives, &settings.primitive_training);
-    [
+    let behaviours = [
         movement(&p.avoid, &t.avoid),
         movement(&p.wander, &t.wander),
         target(&p.approach_battery, &t.approach_battery),
         target(&p.approach_nest, &t.approach_nest),
         target(&p.turn, &t.turn),
-    ]
+    ];
+    behaviours.into_iter().chain(commands).collect()
 }
 
 impl Settings for ForagingSettings {
@@ -365,7 +450,11 @@ impl World for ForagingWorld {
     }
 
     fn begin(&self, start: &Pose, rng: &mut Stream) -> ForagingState {
-        self.sensed(*start, Task::EmptyHanded, rng)
+        let mut state = self.sensed(*start, Task::EmptyHanded, rng);
+        if self.memory.is_some() {
+            self.remember(&mut state, Memory::default(), rng);
+        }
+        state
     }
 
     fn step(
@@ -375,7 +464,8 @@ impl World for ForagingWorld {
         action: usize,
         rng: &mut Stream,
     ) -> f32 {
-        let subtask = self.primitive(primitive);
+        let subtask = self.acting(primitive, state);
+        let (old_pose, mut memory) = (state.pose, state.memory);
         let pose = self.moved(&state.pose, &subtask.arcs[action]);
         let seen = self.see_target(&pose, state.task);
         let (task, reached) = match (state.task, seen) {
@@ -397,10 +487,14 @@ impl World for ForagingWorld {
         } else {
             self.sensed_with(pose, task, seen.map(|(_, sighting)| sighting), rng)
         };
-        let rewarded = match reached {
-            Some(battery) if captured => Some(self.sensors.read(&battery, rng)),
-            _ => state.target,
-        };
+        let reached = reached.filter(|_| captured);
+        let reached = reached.map(|battery| self.sensors.read(&battery, rng));
+        if let Some(settings) = &self.memory {
+            let movement = Self::movement(&old_pose, &pose);
+            memory.shift(movement.measured(settings.odometry_noise, rng));
+            self.remember(state, memory, rng);
+        }
+        let rewarded = reached.or(state.target).or(state.recalled);
         self.reward(&subtask.reward, action, &state.proximity_mm, rewarded)
     }
 
@@ -415,7 +509,10 @@ impl World for ForagingWorld {
     }
 
     fn percept(&self, state: &ForagingState) -> [f32; INPUTS] {
-        self.inputs(&state.proximity_mm, state.target)
+        let mut inputs = self.inputs(&state.proximity_mm, state.target.or(state.recalled));
+        let remembers = self.memory.is_some() && state.target.or(state.recalled).is_some();
+        inputs[REMEMBERS] = f32::from(u8::from(remembers));
+        inputs
     }
 
     fn sample(&self, state_type: StateType, rng: &mut Stream) -> Option<[f32; INPUTS]> {
@@ -424,7 +521,11 @@ impl World for ForagingWorld {
             _ => Task::EmptyHanded,
         };
         (0..MAX_DRAWS).find_map(|_| {
-            let state = self.sensed(self.draw_start(rng), task, rng);
+            let mut state = self.sensed(self.draw_start(rng), task, rng);
+            if self.memory.is_some() {
+                let memory = self.some_memory(&state.pose, rng);
+                self.remember(&mut state, memory, rng);
+            }
             (self.state_type(&state) == state_type).then(|| self.percept(&state))
         })
     }
@@ -438,7 +539,7 @@ impl World for ForagingWorld {
     }
 
     fn training(&self, primitive: SubtaskId) -> Option<&TrainingSettings> {
-        Some(&self.primitive(primitive).training)
+        self.primitive(primitive)?.training.as_ref()
     }
 
     fn begin_training(&self, primitive: SubtaskId, rng: &mut Stream) -> Option<ForagingState> {

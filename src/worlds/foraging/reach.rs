@@ -129,7 +129,9 @@ impl<'a> Survey<'a> {
     fn wall_through(&self, target: usize) -> Option<usize> {
         let centre = self.arena.target(target);
         let mut walls = self.arena.walls.iter();
-        walls.position(|wall| (centre - wall.nearest(centre)).norm() <= IN_WALL_MM)
+        walls.position(|wall| {
+            !wall.transparent && (centre - wall.nearest(centre)).norm() <= IN_WALL_MM
+        })
     }
 
     fn is_reached(&self, target: usize) -> bool {

@@ -23,6 +23,10 @@ pub(super) fn rules(check: &mut Check, settings: &ForagingSettings) {
     check.within("sensors", |c| sensors(c, &settings.sensors));
     check.within("features", |c| features(c, &settings.features));
     check.range("time_step_s", settings.time_step_s, 0.001..=1.0);
+    if let Some(memory) = &settings.memory {
+        let noise = memory.odometry_noise;
+        check.range("memory.odometry_noise", noise, 0.0..=0.9);
+    }
     let p = &settings.primitives;
     let t = &settings.primitive_training;
     check.within("primitives", |c| {
@@ -46,12 +50,18 @@ fn arena(check: &mut Check, arena: &ArenaSettings, radius: f64) {
     check.range("size_mm[0]", arena.size_mm[0], smallest..=20_000.0);
     check.range("size_mm[1]", arena.size_mm[1], smallest..=20_000.0);
     let pieces = arena.fences.iter().map(|fence| fence.slits_at_mm.len() + 1);
-    let walls = arena.walls_mm.len() + pieces.sum::<usize>();
+    let transparent = &arena.transparent_walls_mm;
+    let walls = arena.walls_mm.len() + pieces.sum::<usize>() + transparent.len();
     check.range("walls_mm and fences (solid pieces)", walls, 0..=MAX_WALLS);
-    for (i, [x1, y1, x2, y2]) in arena.walls_mm.iter().copied().enumerate() {
-        check.within(&format!("walls_mm[{i}]"), |c| {
-            segment(c, ["", ""], [x1, y1], [x2, y2], arena.size_mm);
-        });
+    for (name, walls) in [
+        ("walls_mm", &arena.walls_mm),
+        ("transparent_walls_mm", transparent),
+    ] {
+        for (i, [x1, y1, x2, y2]) in walls.iter().copied().enumerate() {
+            check.within(&format!("{name}[{i}]"), |c| {
+                segment(c, ["", ""], [x1, y1], [x2, y2], arena.size_mm);
+            });
+        }
     }
     for (i, settings) in arena.fences.iter().enumerate() {
         check.within(&format!("fences[{i}]"), |c| {

@@ -113,6 +113,18 @@ impl Sensors {
         }
     }
 
+    /// Returns a remembered place as if it were seen: with the noise of a reading, and at most
+    /// at the edge of the field of view.
+    pub(super) fn recall(&self, angle_deg: f64, distance: f64, rng: &mut Stream) -> TargetReading {
+        let limit = self.vision_half_angle_deg;
+        TargetReading {
+            angle_deg: self.noisy(angle_deg as f32, rng).clamp(-limit, limit),
+            distance_mm: self
+                .noisy(distance as f32, rng)
+                .clamp(0.0, self.vision_range as f32),
+        }
+    }
+
     fn noisy(&self, reading: f32, rng: &mut Stream) -> f32 {
         reading * (1.0 + self.noise * (2.0 * rng.random::<f32>() - 1.0))
     }

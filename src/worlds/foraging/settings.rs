@@ -30,6 +30,26 @@ pub struct ForagingSettings {
     /// Length of a time step in seconds.
     #[serde(default = "time_step")]
     pub time_step_s: f64,
+    /// Whether commands to the wheels are primitive subtasks beside the five behaviours: Forward,
+    /// Left, Right, HardLeft, HardRight, SpinLeft, SpinRight and Back (Thesis 3.1: "in the
+    /// standard MAXQ method each primitive action corresponds to exactly one command"). They are
+    /// not trained: each has one action.
+    #[serde(default)]
+    pub commands: bool,
+    /// The robot's memory of places, with the primitive subtask Recall; `null` for none. The
+    /// thesis suggests it as future work (chapter 5).
+    #[serde(default)]
+    pub memory: Option<MemorySettings>,
+}
+
+/// A robot that remembers, within a trial, where it last saw the nest and a battery, and keeps
+/// the places by dead reckoning.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct MemorySettings {
+    /// Relative error of the travelled arc in each time step: the arc is taken to be 1 + u times
+    /// as long, u uniform between minus and plus this value. Errors add up.
+    pub odometry_noise: f64,
 }
 
 fn time_step() -> f64 {
@@ -49,6 +69,10 @@ pub struct ArenaSettings {
     /// Inner walls with slits in them.
     #[serde(default)]
     pub fences: Vec<FenceSettings>,
+    /// Transparent inner walls, each a segment `[x1, y1, x2, y2]`: they stop bodies and proximity
+    /// rays, not sight. A target behind one is seen but cannot be reached straight on.
+    #[serde(default)]
+    pub transparent_walls_mm: Vec<[f64; 4]>,
     /// Centres of the battery packs, `[x, y]`.
     pub batteries_mm: Vec<[f64; 2]>,
     /// Centre of the nest, `[x, y]`.

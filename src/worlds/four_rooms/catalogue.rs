@@ -58,7 +58,8 @@ pub(super) const HAND_MADE: &str = "(Root (NorthWestToNorth Up Down Right Left) 
 /// The catalogue of a house whose goal lies in the given place. If that is a hallway, the goal
 /// is its only cell, and no state has the hallway's type.
 pub(super) fn catalogue(goal: Place) -> Catalogue {
-    let mut builder = CatalogueBuilder::new(Blocks::One, STATE_TYPES, SUBTASKS, MAPS);
+    let mut builder =
+        CatalogueBuilder::new(Blocks::One, STATE_TYPES, SUBTASKS.iter().copied(), MAPS);
     let all = types(Place::ALL);
     builder.composite(ROOT, "walk to the goal", CELL, all, [AT_GOAL], 0);
     let rooms = Place::ALL.into_iter().take(4);

@@ -62,7 +62,7 @@ pub(super) fn passenger_places(city: &City, settings: &TaxiSettings) -> usize {
 
 pub(super) fn catalogue(city: &City, settings: &TaxiSettings) -> Catalogue {
     use {AT_DESTINATION as A, AT_PASSENGER as P, DELIVERED as D, RIDING as R, WAITING as W};
-    let mut b = CatalogueBuilder::new(Blocks::One, STATE_TYPES, SUBTASKS, MAPS);
+    let mut b = CatalogueBuilder::new(Blocks::One, STATE_TYPES, SUBTASKS.iter().copied(), MAPS);
     let abstraction = settings.state_abstraction;
     let map = |map| if abstraction { map } else { STATE };
     let all = [W, P, R, A];

@@ -50,7 +50,7 @@ fn about(context: &ViewContext, tree: &Tree) -> Vec<(String, Paint)> {
     };
     let (kind, what) = match &subtask.kind {
         Kind::Composite { goal, .. } => ("composite", format!("goal: {}", numbers(*goal))),
-        Kind::Primitive { actions } => ("primitive", format!("actions: {}", actions.join(" "))),
+        Kind::Primitive { actions, .. } => ("primitive", format!("actions: {}", actions.join(" "))),
     };
     let active = numbers(subtask.active);
     vec![

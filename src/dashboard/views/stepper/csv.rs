@@ -4,6 +4,7 @@ use std::fmt::Display;
 
 use super::ShownStep;
 use crate::dashboard::views::shared::csv_line;
+use crate::learning::Exit;
 
 /// Writes a time step as a table with one number per line.
 pub(super) fn csv(shown: &ShownStep<'_>) -> String {
@@ -30,17 +31,21 @@ pub(super) fn csv(shown: &ShownStep<'_>) -> String {
     }
     let action = &trace.explanation.action;
     let values = action.values.iter().zip(&action.probabilities);
-    for (label, (value, probability)) in shown.actions(action.node).iter().zip(values) {
+    for (label, (value, probability)) in shown.actions(action).iter().zip(values) {
         add(action.node, label, "q", value);
         add(action.node, label, "probability", probability);
     }
-    if let Some(label) = shown.actions(action.node).get(action.chosen) {
+    if let Some(label) = shown.actions(action).get(action.chosen) {
         add(action.node, label, "chosen", &1);
     }
     add(action.node, "", "reward", &trace.explanation.reward);
     for update_trace in &trace.explanation.update_traces {
         let (node, child) = (update_trace.node, shown.name(update_trace.child));
-        add(node, child, "pseudo_reward", &update_trace.pseudo_reward);
+        match update_trace.exit {
+            Exit::PseudoReward(reward) => add(node, child, "pseudo_reward", &reward),
+            Exit::Continuation { value, .. } => add(node, child, "exit_value", &value),
+            Exit::None => {}
+        }
         add(node, child, "c_tilde_before", &update_trace.c_tilde.before);
         add(node, child, "c_tilde_after", &update_trace.c_tilde.after);
         add(node, child, "c_before", &update_trace.c.before);
@@ -58,6 +63,11 @@ pub(super) fn csv(shown: &ShownStep<'_>) -> String {
         if let Some(end) = update_trace.termination {
             add(node, "", "at_goal", &u8::from(end.at_goal));
         }
+    }
+    for replayed in &trace.explanation.replayed {
+        let (node, child) = (replayed.node, shown.name(replayed.child));
+        add(node, child, "replayed_updates", &replayed.updates);
+        add(node, child, "replayed_mean_error", &replayed.mean_error);
     }
     csv
 }

@@ -40,7 +40,7 @@ pub(super) fn lines(
 
 fn line(shown: &ShownStep<'_>, trace: &StepTrace) -> Line<'static> {
     let action = &trace.explanation.action;
-    let label = shown.actions(action.node).get(action.chosen);
+    let label = shown.actions(action).get(action.chosen);
     let label = label.map_or("", String::as_str);
     let what = format!("{} {label}", shown.name(action.node));
     let state_type = format!("  type {}  ", trace.before.state_type.number());

@@ -20,6 +20,7 @@ use crate::dashboard::look::{Look, Paint};
 use crate::dashboard::scene::{Scene, draw_scene};
 use crate::hierarchy::{Tree, to_dot};
 use crate::lab::inspection::StepTrace;
+use crate::learning::ActionChoice;
 use crate::worlds::{Catalogue, Kind};
 
 /// One time step of the rollout, from the root's choice to the last update.
@@ -58,10 +59,10 @@ impl ShownStep<'_> {
         self.tree.subtask(node).name(self.catalogue)
     }
 
-    /// Returns the actions of a primitive node.
-    fn actions(&self, node: usize) -> &[String] {
-        match &self.catalogue.subtask(self.tree.subtask(node)).kind {
-            Kind::Primitive { actions } => actions,
+    /// Returns the actions that a primitive node chooses from.
+    fn actions(&self, action: &ActionChoice) -> &[String] {
+        match &self.catalogue.subtask(action.acts_as).kind {
+            Kind::Primitive { actions, .. } => actions,
             Kind::Composite { .. } => &[],
         }
     }

@@ -6,7 +6,7 @@ use super::{Detail, ShownStep};
 use crate::dashboard::look::Paint;
 use crate::dashboard::look::lines::{Pen, TINY, is_tiny, number, told_apart};
 use crate::dashboard::views::shared;
-use crate::learning::{Change, Update, UpdateTrace};
+use crate::learning::{Change, Exit, Replayed, Update, UpdateTrace};
 use crate::worlds::StateType;
 
 /// Returns the lines of the outcome.
@@ -29,6 +29,7 @@ pub(super) fn lines(shown: &ShownStep<'_>, columns: usize, detail: Detail) -> Ve
     for update_trace in &explanation.update_traces {
         lines.extend(node_updates(shown, update_trace, columns, detail));
     }
+    lines.extend(replay(shown, &explanation.replayed));
     if let Some(ended) = &shown.trace.ended {
         let (how, paint) = if ended.delivered {
             ("done in", Paint::Good)
@@ -77,13 +78,8 @@ fn node_updates(
         .text(shown.name(update_trace.node), Paint::Title)
         .text(" updates ", Paint::Dim)
         .text(shown.name(update_trace.child), Paint::Text);
-    let text = format!("pseudo-reward {}", update_trace.pseudo_reward);
-    if pen.column() + 2 + text.len() <= columns {
-        let paint = if update_trace.pseudo_reward == 0.0 {
-            Paint::Dim
-        } else {
-            Paint::Bad
-        };
+    let (text, paint) = exit(shown, update_trace.exit);
+    if !text.is_empty() && pen.column() + 2 + text.len() <= columns {
         pen = pen.text("  ", Paint::Text).text(text, paint);
     }
     let mut lines = vec![pen.line()];
@@ -102,6 +98,54 @@ fn node_updates(
         lines.push(change(shown, pen, look.signs.tau, end.temperature).line());
     }
     lines
+}
+
+/// Tells what a node learned of the next state beyond its own values there.
+fn exit(shown: &ShownStep<'_>, exit: Exit) -> (String, Paint) {
+    match exit {
+        Exit::PseudoReward(reward) => {
+            let paint = if reward == 0.0 {
+                Paint::Dim
+            } else {
+                Paint::Bad
+            };
+            (format!("pseudo-reward {reward}"), paint)
+        }
+        Exit::Continuation {
+            ancestor: Some(ancestor),
+            value,
+        } => {
+            let text = format!("exit worth {} to {}", number(value), shown.name(ancestor));
+            (text, Paint::Notice)
+        }
+        Exit::Continuation { ancestor: None, .. } => {
+            (String::from("exit worth 0, the trial is over"), Paint::Dim)
+        }
+        Exit::None => (String::new(), Paint::Dim),
+    }
+}
+
+/// Returns the lines of what the repeated trial changed, if it was repeated.
+fn replay(shown: &ShownStep<'_>, replayed: &[Replayed]) -> Vec<Line<'static>> {
+    if replayed.is_empty() {
+        return Vec::new();
+    }
+    let title = "the trial is replayed, last decision first";
+    let title = shared::line(shown.look, String::from(title), Paint::Title);
+    let line = |one: &Replayed| {
+        Pen::new(shown.look)
+            .to(2)
+            .text(shown.name(one.node), Paint::Text)
+            .text(" updates ", Paint::Dim)
+            .text(shown.name(one.child), Paint::Text)
+            .text(format!("  {} times", one.updates), Paint::Text)
+            .text("  mean error of C~ ", Paint::Dim)
+            .text(number(one.mean_error), Paint::Text)
+            .line()
+    };
+    std::iter::once(title)
+        .chain(replayed.iter().map(line))
+        .collect()
 }
 
 /// Adds a value before and after an update, with enough digits to tell them apart.

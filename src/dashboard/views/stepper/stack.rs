@@ -141,7 +141,22 @@ impl Stack<'_> {
             SelectionRule::EpsilonGreedy => format!("{}-greedily", signs.epsilon),
             _ => String::from("by softmax"),
         };
-        let how = format!("  acts {how}, {} {}", signs.tau, number(action.temperature));
+        let subtask = self.shown.tree.subtask(action.node);
+        let acts = if action.acts_as == subtask {
+            String::from("acts")
+        } else {
+            format!("acts as {}", action.acts_as.name(self.shown.catalogue))
+        };
+        let step = if action.persistence > 1 {
+            format!(", step {} of {}", action.step, action.persistence)
+        } else {
+            String::new()
+        };
+        let how = format!(
+            "  {acts} {how}, {} {}{step}",
+            signs.tau,
+            number(action.temperature)
+        );
         let mut title = Pen::new(self.shown.look)
             .to(depth)
             .text(self.shown.name(action.node), Paint::Title)
@@ -151,7 +166,7 @@ impl Stack<'_> {
             title = title.to(above).text("Q", Paint::Dim);
         }
         let mut lines = vec![title.line()];
-        let labels = self.shown.actions(action.node).iter();
+        let labels = self.shown.actions(action).iter();
         let values = action.values.iter().zip(&action.probabilities);
         for (index, (label, (value, share))) in labels.zip(values).enumerate() {
             let is_chosen = index == action.chosen;
