@@ -5,6 +5,7 @@ use rand::RngExt;
 
 use super::motion::rotate;
 use super::sensors::TargetReading;
+use super::{ForagingState, ForagingWorld, Pose, Task};
 use crate::random::Stream;
 
 /// A robot this close to a remembered place, in millimetres, that faces it and sees nothing
@@ -58,8 +59,61 @@ impl Memory {
     }
 }
 
+impl ForagingWorld {
+    /// Brings the memory of a robot up to date with what it sees in `state`. An empty-handed
+    /// robot looks for the nest too, which takes one more reading.
+    pub(super) fn remember(&self, state: &mut ForagingState, mut memory: Memory, rng: &mut Stream) {
+        let searches = state.task == Task::EmptyHanded;
+        let nest = if searches {
+            look(&mut memory.battery, state.target);
+            let (arena, pose) = (&self.arena, &state.pose);
+            let nest = arena.nest_index();
+            let seen = self.sensors.see(arena, pose.position, pose.heading, nest);
+            seen.map(|sighting| self.sensors.read(&sighting, rng))
+        } else {
+            state.target
+        };
+        look(&mut memory.nest, nest);
+        state.memory = memory;
+        let place = if searches {
+            memory.battery
+        } else {
+            memory.nest
+        };
+        let hidden = place.filter(|_| state.target.is_none());
+        state.recalled = hidden.map(|place| {
+            let distance = place.norm();
+            self.sensors.recall(angle_deg(place), distance, rng)
+        });
+    }
+
+    /// Returns the movement between two poses, in the frame of the first.
+    pub(super) fn movement(before: &Pose, after: &Pose) -> Movement {
+        let back = Vector2::new(before.heading.x, -before.heading.y);
+        Movement {
+            displacement: rotate(after.position - before.position, back),
+            heading: rotate(after.heading, back),
+        }
+    }
+
+    /// Returns the memory of a robot that has seen a random battery and the nest before, with
+    /// probability 1/2 each.
+    pub(super) fn some_memory(&self, pose: &Pose, rng: &mut Stream) -> Memory {
+        let back = Vector2::new(pose.heading.x, -pose.heading.y);
+        let battery = rng.random_range(0..self.arena.batteries.len());
+        let mut place = |target| {
+            let offset = self.arena.target(target) - pose.position;
+            rng.random::<bool>().then(|| rotate(offset, back))
+        };
+        Memory {
+            battery: place(battery),
+            nest: place(self.arena.nest_index()),
+        }
+    }
+}
+
 /// Remembers a place that is seen, or forgets it where it should be seen and is not.
-pub(super) fn look(place: &mut Option<Vector2<f64>>, seen: Option<TargetReading>) {
+fn look(place: &mut Option<Vector2<f64>>, seen: Option<TargetReading>) {
     match seen {
         Some(reading) => {
             let (sin, cos) = libm::sincos(f64::from(reading.angle_deg).to_radians());
@@ -75,7 +129,7 @@ pub(super) fn look(place: &mut Option<Vector2<f64>>, seen: Option<TargetReading>
 }
 
 /// Returns the angle to a place in the frame of the robot.
-pub(super) fn angle_deg(place: Vector2<f64>) -> f64 {
+fn angle_deg(place: Vector2<f64>) -> f64 {
     libm::atan2(place.y, place.x).to_degrees()
 }
 

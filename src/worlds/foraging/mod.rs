@@ -10,6 +10,7 @@ pub mod defaults;
 mod free_space;
 mod memory;
 mod motion;
+mod primitives;
 mod probes;
 mod rays;
 mod reach;
@@ -32,8 +33,8 @@ pub use settings::{
 };
 
 use arena::Reach;
-use memory::{Movement, angle_deg, look};
-use motion::{Arc, rotate, slide};
+use motion::{Arc, slide};
+use primitives::{Primitive, primitives};
 use reach::{Body, Survey};
 use sensors::{Sensors, Sighting};
 
@@ -79,29 +80,6 @@ pub struct ForagingState {
     pub memory: Memory,
     /// The remembered place of a target out of sight, with the noise of a reading.
     pub recalled: Option<TargetReading>,
-}
-
-/// The reward of a primitive subtask (Thesis Eq. 4.1).
-#[derive(Clone, Debug)]
-enum Reward {
-    /// It depends on the action, unless a wall is too near: Avoid, Wander.
-    Movement { actions: Vec<f32>, failure: f32 },
-    /// It depends on the angle to the target: Approach battery, Approach nest, Turn.
-    Target {
-        offset: f32,
-        divisor_deg: f32,
-        failure: f32,
-    },
-    /// There is none: a command.
-    Zero,
-}
-
-/// The actions of a primitive subtask, their rewards, and its training.
-#[derive(Clone, Debug)]
-struct Primitive {
-    arcs: Vec<Arc>,
-    reward: Reward,
-    training: Option<TrainingSettings>,
 }
 
 /// The foraging world of a scenario.
@@ -238,42 +216,6 @@ impl ForagingWorld {
         }
     }
 
-    /// Brings the memory of a robot up to date with what it sees in `state`. An empty-handed
-    /// robot looks for the nest too, which takes one more reading.
-    fn remember(&self, state: &mut ForagingState, mut memory: Memory, rng: &mut Stream) {
-        let searches = state.task == Task::EmptyHanded;
-        let nest = if searches {
-            look(&mut memory.battery, state.target);
-            let (arena, pose) = (&self.arena, &state.pose);
-            let nest = arena.nest_index();
-            let seen = self.sensors.see(arena, pose.position, pose.heading, nest);
-            seen.map(|sighting| self.sensors.read(&sighting, rng))
-        } else {
-            state.target
-        };
-        look(&mut memory.nest, nest);
-        state.memory = memory;
-        let place = if searches {
-            memory.battery
-        } else {
-            memory.nest
-        };
-        let hidden = place.filter(|_| state.target.is_none());
-        state.recalled = hidden.map(|place| {
-            let distance = place.norm();
-            self.sensors.recall(angle_deg(place), distance, rng)
-        });
-    }
-
-    /// Returns the movement between two poses, in the frame of the first.
-    fn movement(before: &Pose, after: &Pose) -> Movement {
-        let back = Vector2::new(before.heading.x, -before.heading.y);
-        Movement {
-            displacement: rotate(after.position - before.position, back),
-            heading: rotate(after.heading, back),
-        }
-    }
-
     fn moved(&self, pose: &Pose, arc: &Arc) -> Pose {
         let motion = arc.displacement(pose.heading);
         let walls = self.arena.touchable(pose.position);
@@ -299,33 +241,6 @@ impl ForagingWorld {
         own.unwrap_or_else(|| &self.primitives[acts_as(id).index() - AVOID.index()])
     }
 
-    fn reward(
-        &self,
-        reward: &Reward,
-        action: usize,
-        proximity_mm: &[f32; PROXIMITY_SENSORS],
-        target: Option<TargetReading>,
-    ) -> f32 {
-        match reward {
-            Reward::Movement { actions, failure } => {
-                let smallest = proximity_mm.iter().fold(f32::INFINITY, |a, &b| a.min(b));
-                if smallest <= self.sensors.proximity_range[0] {
-                    *failure
-                } else {
-                    actions[action]
-                }
-            }
-            Reward::Target {
-                offset,
-                divisor_deg,
-                failure,
-            } => target.map_or(*failure, |target| {
-                offset - target.angle_deg.abs() / divisor_deg
-            }),
-            Reward::Zero => 0.0,
-        }
-    }
-
     /// Scales readings to [0, 1]. Without a target its inputs are 0.
     fn inputs(
         &self,
@@ -345,67 +260,9 @@ impl ForagingWorld {
         inputs
     }
 
-    /// Returns the memory of a robot that has seen a random battery and the nest before, with
-    /// probability 1/2 each.
-    fn some_memory(&self, pose: &Pose, rng: &mut Stream) -> Memory {
-        let back = Vector2::new(pose.heading.x, -pose.heading.y);
-        let battery = rng.random_range(0..self.arena.batteries.len());
-        let mut place = |target| {
-            let offset = self.arena.target(target) - pose.position;
-            rng.random::<bool>().then(|| rotate(offset, back))
-        };
-        Memory {
-            battery: place(battery),
-            nest: place(self.arena.nest_index()),
-        }
-    }
-
     fn is_target_seeking(primitive: SubtaskId) -> bool {
         matches!(primitive, APPROACH_BATTERY | APPROACH_NEST | TURN)
     }
-}
-
-fn primitives(settings: &ForagingSettings) -> Vec<Primitive> {
-    let arcs = |actions: &[[f64; 2]]| {
-        let arc = |&speeds| Arc::new(speeds, settings.robot.wheel_base_mm, settings.time_step_s);
-        actions.iter().map(arc).collect()
-    };
-    let movement = |subtask: &MovementSettings, training: &TrainingSettings| Primitive {
-        arcs: arcs(&subtask.actions_mm_per_s),
-        reward: Reward::Movement {
-            actions: subtask
-                .rewards
-                .iter()
-                .map(|&reward| reward as f32)
-                .collect(),
-            failure: subtask.failure_reward as f32,
-        },
-        training: Some(training.clone()),
-    };
-    let target = |subtask: &TargetSettings, training: &TrainingSettings| Primitive {
-        arcs: arcs(&subtask.actions_mm_per_s),
-        reward: Reward::Target {
-            offset: subtask.reward_offset as f32,
-            divisor_deg: subtask.reward_divisor_deg as f32,
-            failure: subtask.failure_reward as f32,
-        },
-        training: Some(training.clone()),
-    };
-    let commands = defaults::COMMANDS.iter().filter(|_| settings.commands);
-    let commands = commands.map(|(_, speeds)| Primitive {
-        arcs: arcs(&[*speeds]),
-        reward: Reward::Zero,
-        training: None,
-    });
-    let (p, t) = (&settings.primitives, &settings.primitive_training);
-    let behaviours = [
-        movement(&p.avoid, &t.avoid),
-        movement(&p.wander, &t.wander),
-        target(&p.approach_battery, &t.approach_battery),
-        target(&p.approach_nest, &t.approach_nest),
-        target(&p.turn, &t.turn),
-    ];
-    behaviours.into_iter().chain(commands).collect()
 }
 
 impl Settings for ForagingSettings {
@@ -495,7 +352,12 @@ impl World for ForagingWorld {
             self.remember(state, memory, rng);
         }
         let rewarded = reached.or(state.target).or(state.recalled);
-        self.reward(&subtask.reward, action, &state.proximity_mm, rewarded)
+        let smallest = state
+            .proximity_mm
+            .iter()
+            .fold(f32::INFINITY, |a, &b| a.min(b));
+        let is_blocked = smallest <= self.sensors.proximity_range[0];
+        subtask.reward(action, is_blocked, rewarded)
     }
 
     fn state_type(&self, state: &ForagingState) -> StateType {
