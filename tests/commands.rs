@@ -396,6 +396,54 @@ fn help_manual_and_completions_are_printed() {
     }
 }
 
+/// The words that bash offers for the last word of a command line.
+fn completed_by_bash(words: &[&str]) -> Vec<String> {
+    let script = succeeds(program().args(["completions", "bash"]));
+    let words = words.join(" ");
+    let line = format!(
+        "{script}\nCOMP_WORDS=({words} \"\"); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n\
+         _maxq__lab maxq-lab \"\" \"${{COMP_WORDS[COMP_CWORD - 1]}}\"\nprintf '%s\\n' \"${{COMPREPLY[@]}}\""
+    );
+    let offered = succeeds(std::process::Command::new("bash").args(["-c", &line]));
+    offered.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn shells_offer_scenarios_plans_and_themes() {
+    let offers = |words: &[&str], name: &str| {
+        let offered = completed_by_bash(&[&["maxq-lab"], words].concat());
+        assert!(
+            offered.iter().any(|word| word == name),
+            "{words:?}: {offered:?}"
+        );
+    };
+    for command in [
+        "run",
+        "evaluate",
+        "check",
+        "study",
+        "learn",
+        "primitives",
+        "scenarios",
+    ] {
+        offers(&[command], "environment-1");
+    }
+    offers(&["study"], "thesis");
+    offers(&["tree", "show", "--scenario"], "taxi");
+    offers(&["run", "smoke", "--theme"], "high-contrast");
+    // Files are offered too, and a name that is not offered is no error of the arguments.
+    let zsh = succeeds(program().args(["completions", "zsh"]));
+    assert!(zsh.contains("\"files:file:_files\"}"), "{zsh}");
+    let count = |text: &str| zsh.matches(text).count();
+    assert_eq!(count(":(cliff"), count("names:name:(cliff"), "{zsh}");
+    let fish = succeeds(program().args(["completions", "fish"]));
+    assert!(
+        fish.contains("using_subcommand run\" -a \"cliff "),
+        "{fish}"
+    );
+    assert!(!succeeds(program().args(["run", "--help"])).contains("possible values: environment"));
+}
+
 /// The command lines of the examples in a help text, with continued lines joined and without
 /// the remarks beside them.
 fn examples(help: &str) -> Vec<String> {

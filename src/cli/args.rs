@@ -6,6 +6,7 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 
 use super::dashboard::DashboardArgs;
+use super::names;
 use super::output::{Failure, Format};
 use crate::dashboard::terminal;
 use crate::evolution::processors;
@@ -19,6 +20,7 @@ use crate::words::shell_word;
 pub(super) struct ScenarioArgs {
     /// Scenario file, the name of a built-in scenario ('maxq-lab scenarios' lists them), or - for
     /// standard input.
+    #[arg(value_parser = names::scenarios(), hide_possible_values = true)]
     scenario: String,
 
     /// Change a setting of the scenario; may be repeated.

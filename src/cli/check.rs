@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
+use super::names;
 use super::output::{self, CommandResult, Format};
 use crate::files::read_standard_input;
 use crate::lab::experiment;
@@ -28,7 +29,7 @@ Examples:
   maxq-lab check mine.json --set learning.discount=0.95")]
 pub(super) struct Args {
     /// Scenario files, plan files, or names of built-in scenarios and plans; - is standard input.
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = names::scenarios_and_plans(), hide_possible_values = true)]
     files: Vec<String>,
 
     /// Change a setting before validation, as 'maxq-lab run --set' does; may be repeated.

@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use signal_hook::consts::SIGHUP;
 
+use super::names;
 use super::output::{CommandResult, Failure};
 use super::signals::SignalWatcher;
 use crate::dashboard::keys::KeyMap;
@@ -25,7 +26,7 @@ pub(super) struct AppearanceArgs {
     /// Colour theme: dark, light, high-contrast, mono, or one from the configuration file
     /// [default: from the configuration file; mono if NO_COLOR is set or the terminal has no
     /// colours; otherwise light or dark, as the terminal's background is].
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = names::themes(), hide_possible_values = true)]
     theme: Option<String>,
 
     /// Draw with ASCII characters only [default: if the locale is not UTF-8, or on the Linux

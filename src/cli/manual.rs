@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 
 use super::Cli;
+use super::names;
 use super::output::{self, CommandResult};
 
 /// Print a shell completion script.
@@ -30,9 +31,10 @@ pub(super) struct ManualArgs {}
 
 /// Runs `maxq-lab completions`.
 pub(super) fn completions(args: &CompletionArgs) -> CommandResult {
-    let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "maxq-lab", &mut script);
-    output::raw(&script)?;
+    let (mut script, mut command) = (Vec::new(), Cli::command());
+    clap_complete::generate(args.shell, &mut command, "maxq-lab", &mut script);
+    let script = names::completed(args.shell, &String::from_utf8(script)?, &command);
+    output::raw(script.as_bytes())?;
     Ok(ExitCode::SUCCESS)
 }
 

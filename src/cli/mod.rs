@@ -10,6 +10,7 @@ mod frame;
 mod learn;
 mod live;
 mod manual;
+mod names;
 mod output;
 mod primitives;
 mod progress;

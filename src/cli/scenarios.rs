@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 use serde::Serialize;
 
+use super::names;
 use super::output::{self, CommandResult, Format};
 use crate::report::Plan;
 use crate::scenario::{EMBEDDED, EMBEDDED_PLANS, Scenario};
@@ -17,6 +18,7 @@ Example:
   maxq-lab scenarios environment-2 > my-scenario.json     a copy to edit")]
 pub(super) struct Args {
     /// Print the file of this scenario or plan.
+    #[arg(value_parser = names::scenarios_and_plans(), hide_possible_values = true)]
     name: Option<String>,
 
     /// Format of the list.

@@ -7,6 +7,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::json;
 
+use super::names;
 use super::output::{self, CommandResult, Failure, Format, counted};
 use crate::hierarchy::{Glyphs, Summary, Tree, draw, structural_difference, to_dot, to_text};
 use crate::lab::experiment;
@@ -51,7 +52,7 @@ pub(super) enum Command {
         /// Hierarchy, as text.
         tree: String,
         /// Scenario that defines the subtasks and typing rules.
-        #[arg(long, default_value = "environment-1")]
+        #[arg(long, default_value = "environment-1", value_parser = names::scenarios(), hide_possible_values = true)]
         scenario: String,
     },
 }
@@ -67,7 +68,7 @@ pub(super) struct TreeArgs {
 #[derive(Debug, Args)]
 pub(super) struct TreeFormat {
     /// Scenario that defines the subtasks and typing rules.
-    #[arg(long, default_value = "environment-1")]
+    #[arg(long, default_value = "environment-1", value_parser = names::scenarios(), hide_possible_values = true)]
     scenario: String,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]

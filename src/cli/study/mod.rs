@@ -13,6 +13,7 @@ use clap::Subcommand;
 
 use super::args::OnHangup;
 use super::dashboard::DashboardArgs;
+use super::names;
 use super::output::{self, CommandResult, Failure};
 use crate::lab::{Keep, lock_warning};
 use crate::report::{Arm, Base, Numbers, Plan, Study, plan_warnings};
@@ -88,7 +89,7 @@ pub(super) struct Args {
 pub(super) struct StudyArgs {
     /// Study plan (file or built-in name), folder of a study to resume, or scenarios (files or
     /// built-in names).
-    #[arg(required = true, value_name = "PLAN|DIR|SCENARIO")]
+    #[arg(required = true, value_name = "PLAN|DIR|SCENARIO", value_parser = names::scenarios_and_plans(), hide_possible_values = true)]
     what: Vec<String>,
 
     /// Seeds, for scenarios: numbers and inclusive ranges, such as 1..10,42 [default: 1..10; a

@@ -99,6 +99,12 @@ impl Theme {
             .collect()
     }
 
+    /// Returns the names of the built-in themes.
+    #[must_use]
+    pub fn names() -> &'static [&'static str] {
+        &NAMES
+    }
+
     /// Returns the theme without colours.
     #[must_use]
     pub fn mono() -> Self {
