@@ -9,6 +9,7 @@ use super::args::StartArg;
 use super::dashboard::{Appearance, AppearanceArgs};
 use super::output::{self, CommandResult};
 use crate::dashboard::keys::Key;
+use crate::dashboard::session::Exports;
 use crate::dashboard::terminal::{Abilities, LARGEST_SIDE};
 use crate::dashboard::{
     App, Effect, FrameFormat, Input, Mode, OffscreenDashboard, ViewContext, ViewId, render,
@@ -145,13 +146,17 @@ pub(super) fn main(args: &Args) -> CommandResult {
         dashboard.update(Input::Tick(TICK));
     }
     let here = Path::new(".");
+    let mut exports = Exports::default();
     for key in keys {
         for effect in dashboard.update(Input::Key(key)) {
-            if let Effect::Export(export) = effect {
-                let path = export
-                    .save(here)
-                    .map_err(|error| format!("{}: {error}", export.name))?;
-                output::message(&format!("written: {}", path.display()));
+            match effect {
+                Effect::Export(export) => {
+                    let keys = &dashboard.app().context().keys;
+                    let said = exports.write(&export, here, keys);
+                    output::message(&said.map_err(|error| format!("{}: {error}", export.name))?);
+                }
+                Effect::RemoveExport => output::message(&exports.remove_last()),
+                _ => {}
             }
         }
     }

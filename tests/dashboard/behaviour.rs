@@ -431,13 +431,21 @@ fn a_frame_writes_what_its_keys_export() {
         .current_dir(&folder)
         .arg("frame")
         .arg(&foraging().folder);
-    let output = common::output(command.args(["--view", "fitness", "--keys", "e c"]));
+    let output = common::output(command.args(["--view", "fitness", "--keys", "e t e u e c"]));
     let said = common::stderr(&output);
     assert!(output.status.success(), "{said}");
     let name = "fitness-generation6.csv";
     let csv = std::fs::read_to_string(folder.path().join(name)).unwrap();
     assert_eq!(csv.lines().count(), 7, "{csv}");
-    assert!(said.contains(&format!("written: ./{name}")), "{said}");
+    assert!(
+        said.contains("removed: ./fitness-generation6.txt"),
+        "{said}"
+    );
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+    assert!(
+        said.contains(&format!("written: {name} (e u removes it) in ")),
+        "{said}"
+    );
 }
 
 #[test]

@@ -359,6 +359,7 @@ impl App {
             Action::ExportText => ("txt", Some(self.rendered(FrameFormat::Text))),
             Action::ExportAnsi => ("ansi", Some(self.rendered(FrameFormat::Ansi))),
             Action::ExportSvg => ("svg", Some(self.rendered(FrameFormat::Svg))),
+            Action::ExportRemove => return vec![Effect::RemoveExport],
             _ => return Vec::new(),
         };
         let of = match action {

@@ -69,6 +69,8 @@ pub enum Effect {
     },
     /// Write a file.
     Export(Export),
+    /// Remove the file that was written last.
+    RemoveExport,
 }
 
 /// A file to be written.

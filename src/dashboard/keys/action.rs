@@ -205,6 +205,8 @@ actions! {
     ExportDot = "export-dot", ExportMenu, ["d"], "hierarchy as DOT";
     /// Data as a table (CSV).
     ExportCsv = "export-csv", ExportMenu, ["c"], "data as CSV";
+    /// Remove the file that was written last.
+    ExportRemove = "export-remove", ExportMenu, ["u"], "remove the file written last";
 
     /// Yes.
     Yes = "yes", Question, ["y", "enter"], "yes";

@@ -18,6 +18,7 @@ use crossbeam_channel::{Receiver, after};
 use ratatui::crossterm::event::Event as Typed;
 
 pub use runs::{RunsExit, RunsSession};
+pub use save::Exports;
 pub use source::{Live, Source};
 pub use wait::Exit;
 
@@ -55,6 +56,7 @@ pub struct Session<'s> {
     period: Duration,
     /// The run folder.
     folder: &'s Path,
+    exports: Exports,
     ticked: Instant,
     /// When news was last read, when the folder was last measured, and when a frame was last drawn.
     read: Option<Instant>,
@@ -85,6 +87,7 @@ impl<'s> Session<'s> {
             has_back: false,
             period: Duration::from_secs_f64(1.0 / frames_per_second.clamp(0.1, 60.0)),
             folder,
+            exports: Exports::default(),
             ticked: Instant::now(),
             read: None,
             measured: None,
@@ -328,10 +331,16 @@ impl<'s> Session<'s> {
                     }
                 }
                 Effect::Load { generation } => self.loader.load(generation),
-                Effect::Export(export) => match export.save(Path::new(".")) {
-                    Ok(path) => self.show_message(&format!("written: {}", path.display())),
-                    Err(error) => self.show_message(&format!("{}: {error}", export.name)),
-                },
+                Effect::Export(export) => {
+                    let keys = &self.app.context().keys;
+                    let said = self.exports.write(&export, Path::new("."), keys);
+                    let said = said.unwrap_or_else(|error| format!("{}: {error}", export.name));
+                    self.show_message(&said);
+                }
+                Effect::RemoveExport => {
+                    let said = self.exports.remove_last();
+                    self.show_message(&said);
+                }
                 steer => self.source.steer(&steer),
             }
         }
