@@ -83,7 +83,7 @@ fn a_malformed_checkpoint_is_rejected() {
     let file = "checkpoint.json: ";
     assert_says(
         &says(&whole.as_bytes()[..whole.len() / 2]),
-        &[file, "line 1, column", "the text ends"],
+        &[file, "line 1, column", "at state: "],
     );
     assert_says(&says(b""), &[file, "line 1, column 0", "the text ends"]);
     assert_says(
