@@ -2,13 +2,17 @@
 
 use std::time::Instant;
 
+use clap::ValueEnum;
 use serde::Serialize;
 
 use super::answer::{AnswerArgs, Resources};
 use super::args::ScenarioArgs;
+use super::curve;
 use super::output::{CommandResult, Failure, counted};
 use super::progress::repeats;
-use crate::lab::{Protocol, Scored, overrides, summarise, with_changes};
+use crate::lab::{
+    AnyExperiment, CurvePoint, Protocol, Scored, experiment, overrides, summarise, with_changes,
+};
 
 /// Evaluate the structure of a hierarchy.
 ///
@@ -16,17 +20,23 @@ use crate::lab::{Protocol, Scored, overrides, summarise, with_changes};
 /// warm-up trials and continues to learn while it is scored. Repeats are distributed over
 /// separately trained primitive sets (sets of primitive subtasks); the standard error includes
 /// the differences between these sets.
+///
+/// With --curve the answer is a learning curve: the trial length against the trials lived, from
+/// the first warm-up trial to the last scored one. Several trees, and settings to compare with,
+/// give several lines; all use the same seeds.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Example:
-  maxq-lab evaluate environment-3 --tree '(Root Avoid Wander ApproachBattery ApproachNest)'")]
+Examples:
+  maxq-lab evaluate environment-3 --tree '(Root Avoid Wander ApproachBattery ApproachNest)'
+  maxq-lab evaluate environment-4 --tree '(Root Wander Recall ApproachBattery ApproachNest \
+Forward Left Right SpinLeft Back)' --warmup 4000 --repeats 8 --curve --against learning.replay=0")]
 pub(super) struct Args {
     #[command(flatten)]
     scenario: ScenarioArgs,
 
-    /// Hierarchy, as text: '(Root Wander ApproachBattery ApproachNest)'.
-    #[arg(long)]
-    tree: String,
+    /// Hierarchy, as text: '(Root Wander ApproachBattery ApproachNest)'; may be repeated.
+    #[arg(long = "tree", value_name = "TREE", required = true)]
+    trees: Vec<String>,
 
     /// Number of trials in each repeat before scoring starts.
     #[arg(long, value_name = "W", default_value_t = 8, value_parser = clap::value_parser!(u64).range(0..=100_000))]
@@ -44,42 +54,119 @@ pub(super) struct Args {
     #[arg(long, alias = "banks", value_name = "B", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     primitive_sets: u64,
 
+    /// Show the learning curve: as text, or as the content of a CSV or SVG file.
+    #[arg(long, value_name = "FORM", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "text")]
+    curve: Option<CurveForm>,
+
+    /// Evaluate with this setting changed too, for comparison; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    against: Vec<String>,
+
     #[command(flatten)]
     answer: AnswerArgs,
+}
+
+/// How a learning curve is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum CurveForm {
+    /// A chart of characters.
+    Text,
+    /// A table: one row for each line and stretch of trials.
+    Csv,
+    /// A picture.
+    Svg,
 }
 
 /// The evaluation of a structure.
 #[derive(Serialize)]
 pub(super) struct Report {
-    scenario: String,
+    pub(super) scenario: String,
     /// Settings that differ from the built-in scenario of this name.
-    changed: Option<String>,
-    seed: u64,
-    warmup: usize,
-    trials: usize,
+    pub(super) changed: Option<String>,
+    pub(super) seed: u64,
+    pub(super) warmup: usize,
+    pub(super) trials: usize,
     #[serde(rename = "banks")]
-    primitive_sets: usize,
+    pub(super) primitive_sets: usize,
     #[serde(flatten)]
-    scored: Scored,
+    pub(super) scored: Scored,
     control_steps_per_second: f64,
+    /// The setting of `--against`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) against: Option<String>,
+    /// The learning curve, if it was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) curve: Vec<CurvePoint>,
+}
+
+/// One evaluation, or several.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Reports {
+    One(Box<Report>),
+    Several(Vec<Report>),
+}
+
+impl Reports {
+    fn all(&self) -> &[Report] {
+        match self {
+            Self::One(report) => std::slice::from_ref(report),
+            Self::Several(reports) => reports,
+        }
+    }
 }
 
 /// Runs `maxq-lab evaluate`.
 pub(super) fn main(args: Args) -> CommandResult {
     let scenario = args.scenario.load()?;
+    let form = args.curve;
+    let describe = |reports: &Reports| match form {
+        Some(form) => curve::drawn(reports.all(), form),
+        None => reports
+            .all()
+            .iter()
+            .map(describe)
+            .collect::<Vec<_>>()
+            .join("\n"),
+    };
     args.answer
         .answer(scenario, |resources| args.compute(&resources), describe)
 }
 
 impl Args {
-    fn compute(&self, resources: &Resources<'_>) -> Result<Report, Failure> {
-        let Resources {
-            experiment,
-            workers,
-            gate,
-        } = *resources;
+    fn compute(&self, resources: &Resources<'_>) -> Result<Reports, Failure> {
+        let base = resources.experiment;
+        let mut reports = Vec::new();
+        let mut add = |experiment: &dyn AnyExperiment, against: Option<&String>| {
+            for tree in &self.trees {
+                let report = self.report(resources, experiment, tree, against.cloned())?;
+                reports.push(report);
+            }
+            Ok::<_, Failure>(())
+        };
+        add(base, None)?;
+        for setting in &self.against {
+            let changed = base.scenario().clone();
+            let changed = changed.with_settings(std::slice::from_ref(setting));
+            let changed =
+                changed.map_err(|error| error.to_string().replace("--set", "--against"))?;
+            add(&*experiment(changed, self.answer.seed)?, Some(setting))?;
+        }
+        Ok(match reports.len() {
+            1 => Reports::One(Box::new(reports.remove(0))),
+            _ => Reports::Several(reports),
+        })
+    }
+
+    fn report(
+        &self,
+        resources: &Resources<'_>,
+        experiment: &dyn AnyExperiment,
+        tree: &str,
+        against: Option<String>,
+    ) -> Result<Report, Failure> {
         let tree = experiment
-            .read_tree(&self.tree)
+            .read_tree(tree)
             .map_err(|error| format!("--tree: {error}"))?;
         let count = |number: u64| usize::try_from(number).unwrap_or(usize::MAX);
         let protocol = Protocol {
@@ -89,13 +176,15 @@ impl Args {
             // A set that no repeat uses is not trained.
             primitive_sets: count(self.primitive_sets),
         };
-        let started = Instant::now();
+        let (workers, gate) = (resources.workers, resources.gate);
+        let (started, before) = (Instant::now(), gate.control_steps());
         let bar = repeats(self.repeats);
         let show = |done| bar.set_position(done as u64);
-        let scored = experiment.evaluate(&tree, &protocol, workers, gate, &show)?;
+        let mut scored = experiment.evaluate(&tree, &protocol, workers, gate, &show)?;
         bar.finish_and_clear();
-        let computed = gate.control_steps() as f64;
+        let computed = (gate.control_steps() - before) as f64;
         let scenario = experiment.scenario();
+        let curve = std::mem::take(&mut scored.curve);
         Ok(Report {
             scenario: scenario.name.clone(),
             changed: summarise(&overrides(scenario)),
@@ -105,6 +194,12 @@ impl Args {
             primitive_sets: protocol.primitive_sets.min(protocol.repeats),
             control_steps_per_second: computed / started.elapsed().as_secs_f64(),
             scored,
+            against,
+            curve: if self.curve.is_some() {
+                curve
+            } else {
+                Vec::new()
+            },
         })
     }
 }

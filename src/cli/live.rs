@@ -172,7 +172,8 @@ fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
     let ending = match (outcome.converged, outcome.stopped) {
         (true, _) => "converged after",
         (_, true) => "stopped after",
-        _ => "reached its limit of",
+        _ if *generations >= scenario.evolution.generation_limit => "reached its limit of",
+        _ => "reached its limit of control steps after",
     };
     let mut lines = vec![
         format!(

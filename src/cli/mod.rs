@@ -3,6 +3,7 @@
 mod answer;
 mod args;
 mod check;
+mod curve;
 mod dashboard;
 mod evaluate;
 mod export;

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::{Deserialize, Serialize};
 
+use super::curve::{CurvePoint, Lived, curve};
 use super::statistics::{mean_of, standard_error};
 use crate::evolution::{Experiment, Workers};
 use crate::hierarchy::{Tree, to_text};
@@ -72,6 +73,9 @@ pub struct Scored {
     pub mean_return: f64,
     /// Standard error of the mean return, computed like that of the time steps.
     pub return_standard_error: Option<f64>,
+    /// The learning curve over all trials, warm-up included.
+    #[serde(skip)]
+    pub curve: Vec<CurvePoint>,
 }
 
 /// Evaluates the structure `tree`; calls `progress` with the number of repeats done so far.
@@ -111,6 +115,11 @@ pub fn evaluate<W: World>(
     let steps = means(|scored| mean_of(scored.repeat.steps.iter().map(|&steps| f64::from(steps))));
     let returns = means(|scored| mean_of(scored.returns.iter().copied()));
     let delivered: usize = repeats.iter().map(|scored| scored.repeat.delivered).sum();
+    let lived = repeats.iter().map(|scored| {
+        let set = scored.repeat.primitive_set;
+        (set, scored.lived.clone())
+    });
+    let curve = curve(&lived.collect::<Vec<_>>());
     let (repeats, all_returns) = repeats
         .into_iter()
         .map(|scored| (scored.repeat, scored.returns))
@@ -127,6 +136,7 @@ pub fn evaluate<W: World>(
         returns: all_returns,
         mean_return: mean_of(returns.iter().map(|(_, mean)| *mean)),
         return_standard_error: standard_error(&returns),
+        curve,
     })
 }
 
@@ -137,6 +147,8 @@ struct ScoredRepeat {
     returns: Vec<f64>,
     /// Control steps of all trials.
     control_steps: u64,
+    /// All trials.
+    lived: Lived,
 }
 
 fn one_repeat<W: World>(
@@ -160,11 +172,13 @@ fn one_repeat<W: World>(
         },
         returns: Vec::with_capacity(protocol.trials),
         control_steps: 0,
+        lived: Lived::new(protocol.warmup + protocol.trials),
     };
     for trial in 0..protocol.warmup + protocol.trials {
         let start = experiment.world.draw_start(&mut rng);
         let over = agent.run_trial(&start, limit, &mut rng, gate)?;
         scored.control_steps += u64::from(over.steps);
+        scored.lived.add(trial, over.steps, over.done);
         if trial >= protocol.warmup {
             scored.repeat.steps.push(over.steps);
             scored.repeat.delivered += usize::from(over.done);

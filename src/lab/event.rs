@@ -64,6 +64,8 @@ pub enum Ending {
     Converged,
     /// The generation limit was reached.
     GenerationLimit,
+    /// The limit of control steps was reached.
+    ControlStepLimit,
 }
 
 impl Event {

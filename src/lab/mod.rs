@@ -3,6 +3,7 @@
 mod checkpoint;
 mod checkpoint_error;
 mod controls;
+mod curve;
 mod difference;
 mod evaluate;
 mod event;
@@ -37,6 +38,7 @@ mod world_experiment;
 pub use checkpoint::{Checkpoint, LogPosition};
 pub use checkpoint_error::CheckpointError;
 pub use controls::{Activity, Controls};
+pub use curve::CurvePoint;
 pub use difference::{
     Difference, differences, differences_in, overrides, summarise, told, with_changes,
 };

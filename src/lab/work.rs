@@ -214,10 +214,10 @@ impl<W: World> WorldRun<'_, W> {
             controls.feed().send(Event::Generation(record));
             controls.generation_over();
         }
-        let ending = if progress.converged {
-            Ending::Converged
-        } else {
-            Ending::GenerationLimit
+        let ending = match scenario.evolution.generation_limit {
+            _ if progress.converged => Ending::Converged,
+            limit if progress.generations >= limit => Ending::GenerationLimit,
+            _ => Ending::ControlStepLimit,
         };
         let generations = progress.generations;
         self.send_recorded(

@@ -44,5 +44,5 @@ pub use status::{RunState, RunStatus, StatusWatch, course, status};
 pub use study::{RunId, Study, StudyError};
 pub use study_export::{ReportError, WrittenReport, read_facts, write_report};
 pub use study_run::{StudyControls, StudyRun};
-pub use table::Table;
+pub use table::{Table, short};
 pub use winner::Winner;

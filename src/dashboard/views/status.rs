@@ -186,6 +186,10 @@ fn progress(context: &ViewContext, room: usize) -> Vec<Fact> {
         Some(Ending::GenerationLimit) => {
             facts.push(("ended", String::from("at generation limit"), Paint::Notice));
         }
+        Some(Ending::ControlStepLimit) => {
+            let text = String::from("at limit of control steps");
+            facts.push(("ended", text, Paint::Notice));
+        }
         None if context.mode != Mode::Replay => {
             let unknown = || String::from("?");
             let rate = context.pace.steps_per_second();

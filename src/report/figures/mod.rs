@@ -70,7 +70,7 @@ impl std::str::FromStr for FigureNumber {
 /// The content of a figure, independent of how it is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Its number in the thesis.
+    /// Its number in the thesis; empty for a figure that is not there.
     pub number: &'static str,
     /// Its title.
     pub title: String,
@@ -114,6 +114,9 @@ pub struct Series {
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
+    /// The band around it: x, lower and upper end.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub band: Vec<(f64, f64, f64)>,
     /// Index of its colour and of its character in text. A quantity has the same index in all
     /// charts of a figure.
     #[serde(skip)]
@@ -140,6 +143,14 @@ pub struct FigureError {
 }
 
 impl Figure {
+    /// Returns its title with its number.
+    fn full_title(&self) -> String {
+        match self.number {
+            "" => self.title.clone(),
+            number => format!("Figure {number}: {}", self.title),
+        }
+    }
+
     /// Draws the figure as SVG.
     ///
     /// # Errors
@@ -198,9 +209,21 @@ impl Figure {
 impl Chart {
     /// Returns the ranges of both axes; `None` if there is no finite point.
     fn ranges(&self) -> Option<[(f64, f64); 2]> {
-        let points = || self.series.iter().flat_map(|series| &series.points);
+        let points = || {
+            let ends = |&(x, low, high): &(f64, f64, f64)| [(x, low), (x, high)];
+            let of = move |series: &'_ Series| {
+                let bands = series.band.iter().flat_map(ends);
+                series
+                    .points
+                    .iter()
+                    .copied()
+                    .chain(bands)
+                    .collect::<Vec<_>>()
+            };
+            self.series.iter().flat_map(of)
+        };
         let finite = || points().filter(|(x, y)| x.is_finite() && y.is_finite());
-        let range = |of: fn(&(f64, f64)) -> f64| {
+        let range = |of: fn((f64, f64)) -> f64| {
             let values = || finite().map(of);
             let (low, high) = (
                 values().fold(f64::INFINITY, f64::min),

@@ -75,6 +75,7 @@ fn chart(experiment: &dyn AnyExperiment, primitive: &PrimitiveValues) -> Option<
             .map(|(index, (action, points))| Series {
                 name: format!("action {} {action}", index + 1),
                 points,
+                band: Vec::new(),
                 mark: index,
             })
             .collect(),

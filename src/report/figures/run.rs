@@ -174,6 +174,7 @@ impl RunSource {
             series: vec![Series {
                 name: String::from("mean difference"),
                 points: points.collect(),
+                band: Vec::new(),
                 mark: 0,
             }],
         }
@@ -191,6 +192,7 @@ impl RunSource {
                 .iter()
                 .filter_map(|r| Some((r.generation as f64, r.mean_trial_steps(rank)?)))
                 .collect(),
+            band: Vec::new(),
             mark: rank - 1,
         });
         Chart {
@@ -223,6 +225,7 @@ impl RunSource {
         let series = marks.iter().enumerate().map(|(mark, name)| Series {
             name: (*name).clone(),
             points: self.records.iter().filter_map(|r| at(r, name)).collect(),
+            band: Vec::new(),
             mark,
         });
         Chart {

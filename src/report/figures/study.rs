@@ -185,6 +185,7 @@ fn add_course(chart: &mut Chart, runs: &[&Facts], name: String, of: fn(&Generati
     chart.series.push(Series {
         name,
         points: points.collect(),
+        band: Vec::new(),
         mark: chart.series.len(),
     });
 }

@@ -52,7 +52,7 @@ pub(super) fn draw(figure: &Figure) -> Result<String, String> {
     {
         let root = SVGBackend::with_string(&mut text, (WIDTH, total)).into_drawing_area();
         root.fill(&WHITE).map_err(words)?;
-        let title = format!("Figure {}: {}", figure.number, figure.title);
+        let title = figure.full_title();
         put(&root, &title, (WIDTH as i32 / 2, 8), 18, HPos::Center)?;
         let mut top = TITLE_HEIGHT;
         for (row, height) in rows.iter().zip(&heights) {
@@ -118,7 +118,14 @@ fn draw_chart(area: &Area<'_>, chart: &Chart) -> Drawn {
         .draw()
         .map_err(words)?;
     for (index, series) in chart.series.iter().enumerate() {
-        let style = COLOURS[series.mark % COLOURS.len()].stroke_width(2);
+        let colour = COLOURS[series.mark % COLOURS.len()];
+        if !series.band.is_empty() {
+            let lower = series.band.iter().map(|&(x, low, _)| (x, low));
+            let upper = series.band.iter().rev().map(|&(x, _, high)| (x, high));
+            let band = Polygon::new(lower.chain(upper).collect::<Vec<_>>(), colour.mix(0.2));
+            context.draw_series([band]).map_err(words)?;
+        }
+        let style = colour.stroke_width(2);
         context
             .draw_series(LineSeries::new(series.points.iter().copied(), style))
             .map_err(words)?;

@@ -17,7 +17,7 @@ const CHARACTERS: &[u8] = b"123456789abcdefghijklmnopqrstuvwxyz";
 
 /// Draws the figure, one panel below the other.
 pub(super) fn draw(figure: &Figure, columns: usize) -> String {
-    let mut text = format!("Figure {}: {}\n", figure.number, figure.title);
+    let mut text = figure.full_title() + "\n";
     for panel in &figure.panels {
         text.push('\n');
         match panel {
