@@ -38,6 +38,8 @@ pub enum Purpose {
     PolicyMap = 9,
     /// Resampling for the confidence interval of a statistic.
     Bootstrap = 10,
+    /// The trials of the best hierarchy after evolution.
+    LaterLearning = 11,
 }
 
 /// Returns the stream for `purpose` in the given run, generation and individual.

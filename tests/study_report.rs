@@ -79,6 +79,7 @@ fn facts(
             ],
         },
         course: (0..10).map(|g| moment(200.0, f64::from(g) - 9.0)).collect(),
+        later: None,
         fresh: FreshFacts {
             steps,
             standard_error: Some(5.0),

@@ -199,6 +199,13 @@ fn describe(outcome: &Outcome, scenario: &Scenario) -> Result<String, Failure> {
             best.composites,
             counted(best.primitives.len() as u64, "primitive subtask")
         ));
+        if let Some(later) = outcome.later {
+            lines.push(format!(
+                "then {} more trials of learning: {:.1} time steps per trial in the first {}, {:.1} \
+                 in the last {}",
+                later.trials, later.first, later.part, later.last, later.part
+            ));
+        }
         lines.push(String::new());
         lines.extend(with_tree(scenario, &best.tree, |tree, catalogue| {
             draw(tree, catalogue, Glyphs::of_locale())

@@ -7,6 +7,7 @@ use super::live;
 use super::output::{self, CommandResult};
 use super::signals::SignalWatcher;
 use crate::lab::{Invocation, LastSign, RunFolder, resume, resume_at, start};
+use crate::scenario::Then;
 
 /// Evolve hierarchies for a scenario.
 ///
@@ -24,6 +25,7 @@ Examples:
   maxq-lab run environment-2 --seed 7
   maxq-lab run my-scenario.json --threads 4 --format json > result.json
   maxq-lab run environment-1 --set evolution.selection=random --out runs/drift
+  maxq-lab run environment-4 --then learn=2000     how the best goes on learning
   maxq-lab run environment-3 --fps 2               over a slow connection
   maxq-lab run environment-3 --headless            a progress bar, no dashboard")]
 pub(super) struct Args {
@@ -38,6 +40,11 @@ pub(super) struct Args {
     /// scenario's evolution.generation_limit].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     generations: Option<u64>,
+
+    /// What happens after evolution: 'learn=2000' lets the best hierarchy live 2000 more trials
+    /// and go on learning; learning.json holds them [default: the scenario's evolution.then].
+    #[arg(long, value_name = "learn=TRIALS", value_parser = then)]
+    then: Option<Then>,
 
     /// Run folder [default: runs/SCENARIO-seedN].
     #[arg(long, value_name = "DIR")]
@@ -58,6 +65,10 @@ pub(super) fn main(args: Args) -> CommandResult {
         scenario.evolution.generation_limit = generations;
         scenario = scenario.checked("--generations")?;
     }
+    if args.then.is_some() {
+        scenario.evolution.then = args.then;
+        scenario = scenario.checked("--then")?;
+    }
     let folder = args.out.unwrap_or_else(|| {
         PathBuf::from("runs").join(format!("{}-seed{}", scenario.name, args.seed))
     });
@@ -77,6 +88,15 @@ pub(super) fn main(args: Args) -> CommandResult {
         output::message(&format!("note: kept in {folder}: {}", kept.join(", ")));
     }
     live::follow(run, dashboard, signals, execution)
+}
+
+/// Reads `learn=2000`.
+fn then(text: &str) -> Result<Then, String> {
+    let trials = text.strip_prefix("learn=");
+    let trials = trials.and_then(|trials| trials.parse().ok());
+    trials
+        .map(Then::Learn)
+        .ok_or_else(|| String::from("allowed: learn= and a number of trials from 1 to 1000000"))
 }
 
 /// Resume a run that was interrupted.

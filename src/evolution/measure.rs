@@ -51,7 +51,8 @@ impl<W: World> Measurement<'_, W> {
                     primitives: summary.primitives,
                     primitives_by_state_type: summary.primitives_by_state_type,
                     fitness_steps: results.fitness(),
-                    trials: results.scored.clone(),
+                    trials: results.scored.listed.clone(),
+                    unlisted: results.scored.unlisted,
                     difference_to_best: structural_difference(tree, best, catalogue),
                 }
             })

@@ -18,4 +18,4 @@ pub use experiment::{Experiment, ExperimentError, TreeError, read_tree};
 pub use individual::{Individual, Inherited, Mutation, Origin, Parent};
 pub use mutation::mutated;
 pub use parallel::{Workers, processors};
-pub use record::{GenerationRecord, RankedRecord, TrialRecord};
+pub use record::{GenerationRecord, MOST_LISTED, RankedRecord, TrialRecord, UnlistedTrials};

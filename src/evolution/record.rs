@@ -16,6 +16,22 @@ pub struct TrialRecord {
     pub delivered: bool,
 }
 
+/// Most scored trials that a record lists, so that it does not grow with the trials of a
+/// generation.
+pub const MOST_LISTED: usize = 512;
+
+/// The sum of trials that a record does not list.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UnlistedTrials {
+    /// Number of trials.
+    pub trials: usize,
+    /// Number of trials in which the task was done.
+    pub delivered: usize,
+    /// Time steps of all.
+    pub steps: u64,
+}
+
 /// One individual after its generation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -36,10 +52,34 @@ pub struct RankedRecord {
     pub primitives_by_state_type: Vec<Vec<String>>,
     /// Fitness: time steps over the scored trials; smaller is better.
     pub fitness_steps: u64,
-    /// The scored trials in the order in which they were run.
+    /// The scored trials in the order in which they were run, at most [`MOST_LISTED`] of them.
     pub trials: Vec<TrialRecord>,
+    /// The scored trials that are not listed; `None` if all are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unlisted: Option<UnlistedTrials>,
     /// Structural difference to the best individual (Thesis 4.5.2), 0 or negative.
     pub difference_to_best: i64,
+}
+
+impl RankedRecord {
+    /// Returns the number of scored trials.
+    #[must_use]
+    pub fn scored(&self) -> usize {
+        self.trials.len() + self.unlisted.map_or(0, |unlisted| unlisted.trials)
+    }
+
+    /// Returns the number of scored trials in which the task was done.
+    #[must_use]
+    pub fn delivered(&self) -> usize {
+        let listed = self.trials.iter().filter(|trial| trial.delivered).count();
+        listed + self.unlisted.map_or(0, |unlisted| unlisted.delivered)
+    }
+
+    /// Returns the mean time steps of a scored trial.
+    #[must_use]
+    pub fn mean_steps(&self) -> f64 {
+        self.fitness_steps as f64 / self.scored().max(1) as f64
+    }
 }
 
 /// One generation.
@@ -78,6 +118,6 @@ impl GenerationRecord {
     #[must_use]
     pub fn mean_trial_steps(&self, rank: usize) -> Option<f64> {
         let individual = self.individuals.get(rank.checked_sub(1)?)?;
-        Some(individual.fitness_steps as f64 / individual.trials.len() as f64)
+        Some(individual.mean_steps())
     }
 }

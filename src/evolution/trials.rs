@@ -4,7 +4,7 @@ use rand::seq::SliceRandom;
 
 use super::experiment::Experiment;
 use super::individual::{Individual, Origin};
-use super::record::TrialRecord;
+use super::record::{MOST_LISTED, TrialRecord, UnlistedTrials};
 use super::turns::PooledTask;
 use crate::learning::{Agent, Gate, Hierarchy, PrimitiveSet, Stopped};
 use crate::random::{Purpose, Stream, stream};
@@ -43,8 +43,8 @@ pub(super) struct TrialResults {
     pub(super) hierarchy: Hierarchy,
     /// The primitive set, which changes only where primitive subtasks learn.
     pub(super) primitives: PrimitiveSet,
-    /// The scored trials, in the order in which they were run.
-    pub(super) scored: Vec<TrialRecord>,
+    /// The scored trials.
+    pub(super) scored: ScoredTrials,
     /// Time steps of all trials.
     pub(super) control_steps: u64,
 }
@@ -52,7 +52,32 @@ pub(super) struct TrialResults {
 impl TrialResults {
     /// Returns the time steps over the scored trials. Smaller is better (Thesis 4.2).
     pub(super) fn fitness(&self) -> u64 {
-        self.scored.iter().map(|trial| u64::from(trial.steps)).sum()
+        let listed = self
+            .scored
+            .listed
+            .iter()
+            .map(|trial| u64::from(trial.steps));
+        listed.sum::<u64>() + self.scored.unlisted.map_or(0, |unlisted| unlisted.steps)
+    }
+}
+
+/// The scored trials of an individual, in the order in which they were run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ScoredTrials {
+    pub(super) listed: Vec<TrialRecord>,
+    pub(super) unlisted: Option<UnlistedTrials>,
+}
+
+impl ScoredTrials {
+    fn add(&mut self, trial: TrialRecord) {
+        if self.listed.len() < MOST_LISTED {
+            self.listed.push(trial);
+            return;
+        }
+        let unlisted = self.unlisted.get_or_insert_default();
+        unlisted.trials += 1;
+        unlisted.delivered += usize::from(trial.delivered);
+        unlisted.steps += u64::from(trial.steps);
     }
 }
 
@@ -79,7 +104,7 @@ pub(super) struct IndividualTrials<'g, W: World> {
     next: usize,
     /// The order of the trials in the present half.
     order: Vec<usize>,
-    scored: Vec<TrialRecord>,
+    scored: ScoredTrials,
     control_steps: u64,
 }
 
@@ -112,7 +137,7 @@ impl<'g, W: World> IndividualTrials<'g, W> {
             first,
             next: first,
             order: Vec::new(),
-            scored: Vec::new(),
+            scored: ScoredTrials::default(),
             control_steps: 0,
         }
     }
@@ -174,7 +199,7 @@ impl<W: World> PooledTask for IndividualTrials<'_, W> {
         self.agent = Some(agent);
         self.control_steps += u64::from(trial.steps);
         if is_scored {
-            self.scored.push(TrialRecord {
+            self.scored.add(TrialRecord {
                 steps: trial.steps,
                 delivered: trial.done,
             });

@@ -284,7 +284,7 @@ fn parse_state<'t, T: Deserialize<'t>>(text: &'t str) -> Result<T, CheckpointErr
 }
 
 /// Checks that a checkpoint of `own` belongs to the run of `allowed`, except for the generation
-/// limit.
+/// limit and for what happens after evolution.
 fn check_origin(own: (&Scenario, u64), run: (&Scenario, u64)) -> Result<(), String> {
     let ((mine, seed), (scenario, found)) = (own, run);
     if found != seed {
@@ -294,10 +294,11 @@ fn check_origin(own: (&Scenario, u64), run: (&Scenario, u64)) -> Result<(), Stri
     }
     let mut mine = mine.clone();
     mine.evolution.generation_limit = scenario.evolution.generation_limit;
+    mine.evolution.then = scenario.evolution.then;
     if mine != *scenario {
         return Err(String::from(
             "scenario: found another; allowed: that of checkpoint.json, except for \
-             generation_limit",
+             generation_limit and then",
         ));
     }
     Ok(())

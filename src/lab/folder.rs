@@ -30,12 +30,15 @@ pub const SUMMARY: &str = "summary.json";
 
 /// Name of the file with the evaluation of the winner, which studies write.
 pub const EVALUATION: &str = "evaluation.json";
+/// Name of the file with the trials that the best hierarchy lived after evolution.
+pub const LEARNING: &str = "learning.json";
 /// Name of the folder of kept checkpoints.
 pub(super) const GENERATIONS: &str = "generations";
 
 /// The files and folders of a run, apart from `run.json` and the lock.
-const OWN: [&str; 7] = [
+const OWN: [&str; 8] = [
     SUMMARY,
+    LEARNING,
     ERROR,
     EVALUATION,
     CHECKPOINT,

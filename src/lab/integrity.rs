@@ -119,7 +119,8 @@ impl EventOrder {
                 return wrong("rank", rank, index as u64 + 1);
             }
             let steps = individual.trials.iter().map(|trial| u64::from(trial.steps));
-            let steps: u64 = steps.sum();
+            let unlisted = individual.unlisted.map_or(0, |unlisted| unlisted.steps);
+            let steps = steps.sum::<u64>().saturating_add(unlisted);
             if fitness != steps {
                 return wrong("fitness_steps", fitness, steps);
             }

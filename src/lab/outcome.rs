@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::folder::SUMMARY;
+use super::later::LaterSummary;
 use crate::evolution::{GenerationRecord, RankedRecord};
 use crate::files::{FileError, Limits, parse_json, read_text};
 
@@ -24,7 +25,10 @@ pub struct Outcome {
     pub stopped: bool,
     /// The best individual of the last generation; `None` before the first generation is done.
     pub best: Option<BestIndividual>,
-    /// Control steps of the run, training of the primitive subtasks included.
+    /// What the best hierarchy learned after evolution, if the scenario asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub later: Option<LaterSummary>,
+    /// Control steps of the evolution, training of the primitive subtasks included.
     pub control_steps: u64,
     /// Wall-clock time of this process, in seconds.
     pub wall_seconds: f64,

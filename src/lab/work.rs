@@ -11,6 +11,7 @@ use super::event::{EVENT_FORMAT, Ending, Event};
 use super::folder::RunFolder;
 use super::keep::Keep;
 use super::last_sign::ErrorPlace;
+use super::later::LaterLearning;
 use super::log::Log;
 use super::outcome::{BestIndividual, Outcome};
 use super::pulse::Pulse;
@@ -19,6 +20,7 @@ use super::run_error::RunError;
 use crate::evolution::{Evolution, EvolutionState, Experiment, Workers};
 use crate::files::{FileError, write_atomically};
 use crate::learning::Stopped;
+use crate::scenario::Then;
 use crate::worlds::World;
 
 /// What the evolution thread needs besides the experiment.
@@ -50,6 +52,7 @@ struct Progress {
     converged: bool,
     control_steps: u64,
     best: Option<BestIndividual>,
+    learning: Option<LaterLearning>,
     over: bool,
 }
 
@@ -124,10 +127,14 @@ impl Work {
             converged: progress.converged,
             stopped: !progress.over,
             best: progress.best,
+            later: progress.learning.as_ref().map(LaterLearning::summary),
             control_steps: progress.control_steps,
             wall_seconds: started.elapsed().as_secs_f64(),
             run_dir: folder.clone(),
         };
+        if let Some(learning) = &progress.learning {
+            learning.write(self.folder.path())?;
+        }
         // Resuming a run that was over keeps the wall-clock time in its summary.
         if progress.over && !has_summary(&self.folder, &outcome) {
             let written = serde_json::to_vec_pretty(&outcome)
@@ -147,6 +154,7 @@ impl<W: World> WorldRun<'_, W> {
             converged: false,
             control_steps: 0,
             best: None,
+            learning: None,
             over: false,
         };
         for event in past {
@@ -227,6 +235,11 @@ impl<W: World> WorldRun<'_, W> {
             },
             recorder,
         )?;
+        if let Some(Then::Learn(trials)) = scenario.evolution.then {
+            let state = evolution.state();
+            let gate = controls.gate();
+            progress.learning = LaterLearning::of(self.experiment, seed, state, trials, gate)?;
+        }
         progress.over = true;
         Ok(())
     }

@@ -255,6 +255,17 @@ pub const CLAIMS: &[Claim] = &[
             moves.then(|| run.over(0.75, 1.0, of) < 0.5 * run.over(0.0, 0.25, of))
         },
     },
+    Claim {
+        id: "policies-improve-later",
+        source: "TEC 2007",
+        statement: "when the best hierarchy goes on learning after evolution, its trials of the last \
+                    tenth are shorter than those of the first tenth",
+        scope: Scope::Each,
+        shows: |e| {
+            let later = e.run()?.later?;
+            Some(later.last < later.first)
+        },
+    },
 ];
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::study::{RunId, Study};
 use super::winner::Winner;
 use crate::evolution::GenerationRecord;
 use crate::files::FileError;
-use crate::lab::{EVENTS, Event, Outcome, Recording, experiment};
+use crate::lab::{EVENTS, Event, LaterSummary, Outcome, Recording, experiment};
 
 /// The facts of a finished run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,6 +30,9 @@ pub struct Facts {
     pub course: Vec<GenerationFacts>,
     /// Results of the winner's structure on fresh trials.
     pub fresh: FreshFacts,
+    /// What the best hierarchy learned after evolution, if the scenario asks for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub later: Option<LaterSummary>,
 }
 
 /// Numbers of one generation.
@@ -100,6 +103,7 @@ impl Facts {
                 standard_error: found.evaluation.standard_error,
                 delivered_share: found.evaluation.delivered_share,
             },
+            later: outcome.later,
         }))
     }
 

@@ -32,11 +32,6 @@ pub fn individuals(run: &RunSource) -> Table {
     table.provenance = run.provenance("--format csv");
     for record in &run.records {
         for individual in &record.individuals {
-            let delivered = individual
-                .trials
-                .iter()
-                .filter(|trial| trial.delivered)
-                .count();
             table.rows.push(vec![
                 run.scenario.name.clone(),
                 run.seed.to_string(),
@@ -46,9 +41,9 @@ pub fn individuals(run: &RunSource) -> Table {
                 origin(&individual.origin).to_owned(),
                 mutations(&individual.origin),
                 individual.fitness_steps.to_string(),
-                (individual.fitness_steps as f64 / individual.trials.len() as f64).to_string(),
-                delivered.to_string(),
-                individual.trials.len().to_string(),
+                individual.mean_steps().to_string(),
+                individual.delivered().to_string(),
+                individual.scored().to_string(),
                 individual.composites.to_string(),
                 individual.primitives.len().to_string(),
                 individual.difference_to_best.to_string(),

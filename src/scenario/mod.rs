@@ -19,7 +19,7 @@ mod settings;
 pub use embedded::{EMBEDDED, EMBEDDED_PLANS, Embedded, names};
 pub use settings::{
     Bootstrap, CompositeChoice, CompositeReward, CoolOn, EvolutionSettings, ExitValue, Inheritance,
-    LearningSettings, PrimitiveLearning, PseudoReward, Reset, Selection, Variation,
+    LearningSettings, PrimitiveLearning, PseudoReward, Reset, Selection, Then, Variation,
 };
 
 /// The version of the scenario format that this program reads.

@@ -3,7 +3,9 @@
 //! The settings of a world are checked by the world. Rules on hierarchies need the world's
 //! subtasks and are checked where hierarchies are parsed, in `evolution`.
 
-use super::{CompositeReward, EvolutionSettings, LearningSettings, PrimitiveLearning, Scenario};
+use super::{
+    CompositeReward, EvolutionSettings, LearningSettings, PrimitiveLearning, Scenario, Then,
+};
 use crate::rules::{Check, Problem};
 
 /// Longest hierarchy, in bytes: it bounds the work that a hostile file can cause.
@@ -89,7 +91,7 @@ fn evolution(check: &mut Check, evolution: &EvolutionSettings) {
     let tournament = evolution.tournament_size;
     check.range("tournament_size", tournament, 1..=survivors.max(1));
     let trials = evolution.trials_per_generation;
-    check.range("trials_per_generation", trials, 2..=1024);
+    check.range("trials_per_generation", trials, 2..=100_000);
     check.rule(
         trials.is_multiple_of(2),
         "trials_per_generation",
@@ -100,6 +102,9 @@ fn evolution(check: &mut Check, evolution: &EvolutionSettings) {
     check.range("generation_limit", evolution.generation_limit, 1..=100_000);
     if let Some(limit) = evolution.control_step_limit {
         check.range("control_step_limit", limit, 1..=1_000_000_000_000_u64);
+    }
+    if let Some(Then::Learn(trials)) = evolution.then {
+        check.range("then.learn", trials, 1..=1_000_000);
     }
     check.range("trial_step_limit", evolution.trial_step_limit, 1..=100_000);
     check.ranges([

@@ -233,6 +233,9 @@ pub struct EvolutionSettings {
     /// Whether evolution ends when the better half of the population has one structure.
     #[serde(default = "yes")]
     pub stop_on_convergence: bool,
+    /// What happens when evolution is over; `null` for nothing.
+    #[serde(default)]
+    pub then: Option<Then>,
     /// Time steps after which a trial is truncated.
     #[serde(default = "constant::<u32, { d::TRIAL_STEP_LIMIT }>")]
     pub trial_step_limit: u32,
@@ -272,6 +275,15 @@ fn constant<T: From<u16>, const VALUE: u16>() -> T {
 
 fn yes() -> bool {
     true
+}
+
+/// What happens when evolution is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Then {
+    /// The best hierarchy lives this many more trials and goes on learning. Its trials are kept in
+    /// `learning.json`.
+    Learn(u32),
 }
 
 /// How the individuals of a generation are ranked.

@@ -7,7 +7,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::policy::SMALL;
-use super::shared::{csv_line, draw_note, keys, line, mean_steps};
+use super::shared::{csv_line, draw_note, keys, line};
 use super::view::View;
 use crate::dashboard::context::Effect;
 use crate::dashboard::context::{Chosen, ViewContext};
@@ -147,8 +147,8 @@ impl Side<'_> {
         let look = &context.look;
         let record = self.record;
         let generation = context.inspected().map_or(0, |(generation, _)| generation);
-        let delivered = record.trials.iter().filter(|trial| trial.delivered).count();
-        let (rank, trials, steps) = (record.rank, record.trials.len(), mean_steps(record));
+        let (delivered, trials) = (record.delivered(), record.scored());
+        let (rank, steps) = (record.rank, record.mean_steps());
         let (composites, primitives) = (record.composites, record.primitives.len());
         let head = format!("individual {}, generation {generation}", record.id);
         let facts = [

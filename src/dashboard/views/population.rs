@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use super::shared::{
-    below, csv_line, draw_no_generation, mark_selected, mean_steps, origin, random_ranks, row,
+    below, csv_line, draw_no_generation, mark_selected, origin, random_ranks, row,
 };
 use super::view::View;
 use crate::dashboard::context::Effect;
@@ -119,7 +119,7 @@ impl Column {
         match self {
             Self::Rank => individual.rank.to_string(),
             Self::Id => individual.id.to_string(),
-            Self::Steps => format!("{:.1}", mean_steps(individual)),
+            Self::Steps => format!("{:.1}", individual.mean_steps()),
             Self::Failed => match failed(individual) {
                 0 => String::new(),
                 failed => failed.to_string(),
@@ -146,8 +146,7 @@ impl Column {
 
 /// Counts the scored trials that were truncated at the step limit.
 fn failed(individual: &RankedRecord) -> usize {
-    let trials = individual.trials.iter();
-    trials.filter(|trial| !trial.delivered).count()
+    individual.scored() - individual.delivered()
 }
 
 fn draw_individual(
@@ -354,7 +353,7 @@ impl View for Population {
                     &individual.rank,
                     &individual.id,
                     &individual.fitness_steps,
-                    &individual.trials.len(),
+                    &individual.scored(),
                     &individual.composites,
                     &individual.primitives.len(),
                     &individual.difference_to_best,

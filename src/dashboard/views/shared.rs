@@ -10,7 +10,7 @@ use crate::dashboard::context::{Activity, Clicked, ViewContext, line_at};
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::Pen;
 use crate::dashboard::look::{Chart, Curve, Look, Paint, axis_end, fitted, put};
-use crate::evolution::{Origin, RankedRecord};
+use crate::evolution::Origin;
 use crate::scenario::Selection;
 use crate::worlds::scene::Snapshot;
 
@@ -162,11 +162,6 @@ pub(super) fn csv_line(csv: &mut String, fields: &[&dyn Display]) {
         let _ = write!(csv, "{separator}{quote}{field}{quote}");
     }
     csv.push('\n');
-}
-
-/// Returns the fitness of an individual: its mean time steps per scored trial.
-pub(super) fn mean_steps(individual: &RankedRecord) -> f64 {
-    individual.fitness_steps as f64 / individual.trials.len().max(1) as f64
 }
 
 /// Returns the name of the state's variant, for example `from R to G`.

@@ -71,7 +71,10 @@ fn story(individual: &RankedRecord) -> Vec<(String, Paint)> {
         let mark = if trial.delivered { "" } else { "!" };
         format!("{}{mark}", trial.steps)
     });
-    let trials = trials.collect::<Vec<_>>().join(" ");
+    let unlisted = individual
+        .unlisted
+        .map(|unlisted| format!("and {} more", unlisted.trials));
+    let trials = trials.chain(unlisted).collect::<Vec<_>>().join(" ");
     let scored = (
         format!("time steps of scored trials: {trials}"),
         Paint::Text,
