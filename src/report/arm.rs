@@ -28,7 +28,8 @@ pub struct Arm {
 /// What an arm does with a scenario.
 ///
 /// An arm without crossover never converges. It has a *matched budget*: as many generations,
-/// individuals and trials as the evolved run of the same scenario, settings and seed.
+/// individuals and trials as the evolved run of the same scenario, settings and seed, or as many
+/// control steps where the scenario limits them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Base {

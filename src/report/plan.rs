@@ -13,7 +13,7 @@ use super::numbers::Numbers;
 use super::plan_error::PlanError;
 use crate::files::{FileError, JsonError, Limits, parse_json, read_text, stated_format};
 use crate::rules::{NAMES, is_name};
-use crate::scenario::{self, EMBEDDED_PLANS, Scenario, ScenarioError};
+use crate::scenario::{self, EMBEDDED_PLANS, Scenario, ScenarioError, Then};
 use crate::words::quoted;
 
 /// Version of the plan format.
@@ -348,6 +348,9 @@ struct PlanFile<'t> {
     /// How the winners of runs are evaluated.
     #[serde(default)]
     reevaluation: Reevaluation,
+    /// What happens after each evolution: the `evolution.then` of every scenario.
+    #[serde(default)]
+    then: Option<Then>,
 }
 
 /// A scenario of a plan, for the schema. It is parsed by hand, for errors that name the place.
@@ -389,7 +392,12 @@ impl<'t> PlanFile<'t> {
                 source: Box::new(source),
             })
         });
-        let scenarios = scenarios.collect::<Result<_, _>>()?;
+        let mut scenarios = scenarios.collect::<Result<Vec<Scenario>, _>>()?;
+        if self.then.is_some() {
+            for scenario in &mut scenarios {
+                scenario.evolution.then = self.then;
+            }
+        }
         let arms = self.arms.iter().enumerate().map(|(index, value)| {
             arm(value).map_err(|message| PlanError::Invalid {
                 file: file.to_owned(),

@@ -136,7 +136,8 @@ impl StudyRun<'_> {
     /// Returns the scenario with the budget of its arm.
     fn with_budget(&self, scenario: &Scenario) -> Result<Scenario, StudyRunError> {
         let mut scenario = scenario.clone();
-        if self.study.arm(&self.run).base.is_matched() {
+        let evolution = &scenario.evolution;
+        if self.study.arm(&self.run).base.is_matched() && evolution.control_step_limit.is_none() {
             scenario.evolution.generation_limit = self.evolved_generations()?;
         }
         Ok(scenario)

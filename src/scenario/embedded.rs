@@ -25,7 +25,7 @@ pub const EMBEDDED: &[Embedded] = embedded!["scenarios": "cliff", "environment-1
 /// All built-in plans of studies: the files of `scenarios/studies/`. They use embedded
 /// scenarios only.
 pub const EMBEDDED_PLANS: &[Embedded] =
-    embedded!["scenarios/studies": "evolving-taxi", "mutation", "thesis"];
+    embedded!["scenarios/studies": "evolving-taxi", "learning", "mutation", "thesis"];
 
 /// Returns the names of built-in scenarios or plans, for messages.
 #[must_use]
