@@ -1,12 +1,25 @@
 //! Draws the learning curves of `maxq-lab evaluate --curve`.
 
-use super::evaluate::{CurveForm, Report};
+use clap::ValueEnum;
+
+use super::evaluation::Report;
 use crate::lab::{CurvePoint, with_changes};
 use crate::report::figures::{Chart, Figure, Panel, Series};
 use crate::report::{Table, short};
 
 /// Columns of a chart of characters.
 const COLUMNS: usize = 100;
+
+/// How a learning curve is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum CurveForm {
+    /// A chart of characters.
+    Text,
+    /// A table: one row for each line and stretch of trials.
+    Csv,
+    /// A picture.
+    Svg,
+}
 
 /// Returns the curves in the form asked for.
 pub(super) fn drawn(reports: &[Report], form: CurveForm) -> String {

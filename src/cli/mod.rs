@@ -6,6 +6,7 @@ mod check;
 mod curve;
 mod dashboard;
 mod evaluate;
+mod evaluation;
 mod export;
 mod frame;
 mod learn;
