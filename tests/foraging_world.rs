@@ -10,10 +10,14 @@
 
 #[path = "foraging/geometry.rs"]
 mod geometry;
+#[path = "foraging/memory.rs"]
+mod memory;
 #[path = "foraging/primitives.rs"]
 mod primitives;
 #[path = "foraging/readings.rs"]
 mod readings;
+#[path = "foraging/transparent_walls.rs"]
+mod transparent_walls;
 #[path = "foraging/walks.rs"]
 mod walks;
 
@@ -25,7 +29,13 @@ use maxq_lab::worlds::foraging::{ForagingState, ForagingWorld};
 use maxq_lab::worlds::{SubtaskId, World};
 use rand::RngExt;
 
-const SCENARIOS: [&str; 4] = ["environment-1", "environment-2", "environment-3", "smoke"];
+const SCENARIOS: [&str; 5] = [
+    "environment-1",
+    "environment-2",
+    "environment-3",
+    "environment-6",
+    "smoke",
+];
 
 fn model(scenario: &str) -> ForagingSettings {
     let WorldSettings::Foraging(model) = Scenario::load(scenario).unwrap().world else {
@@ -51,6 +61,7 @@ fn some_action(
         .filter(|&primitive| catalogue.subtask(primitive).active.contains(state_type))
         .collect();
     let primitive = active[rng.random_range(0..active.len())];
-    let actions = catalogue.subtask(primitive).actions();
+    let acts_as = catalogue.acts_as(primitive, state_type, state.recalled.is_some());
+    let actions = catalogue.subtask(acts_as).actions();
     (primitive, rng.random_range(0..actions))
 }

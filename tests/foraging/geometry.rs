@@ -63,7 +63,7 @@ pub fn sees(arena: &Arena, pose: &Pose, target: usize) -> Option<Option<Sight>> 
         return Some(None);
     }
     let mut blocked = Some(false);
-    for wall in &arena.walls {
+    for wall in arena.walls.iter().filter(|wall| !wall.transparent) {
         match crosses(pose.position, arena.target(target), wall) {
             Some(true) => return Some(None),
             Some(false) => {}

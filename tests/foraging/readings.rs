@@ -3,7 +3,8 @@
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::worlds::World;
 use maxq_lab::worlds::foraging::{
-    ANGLE, BATTERY_VISIBLE, CARRYING, DISTANCE, ForagingWorld, NEST_VISIBLE, Pose, SEARCHING,
+    ANGLE, BATTERY_VISIBLE, CARRYING, DISTANCE, ForagingState, ForagingWorld, NEST_VISIBLE, Pose,
+    REMEMBERS, SEARCHING, Task,
 };
 use nalgebra::{Point2, Vector2};
 
@@ -23,6 +24,14 @@ fn ahead(gap_mm: f64) -> Vec<f64> {
     let mut rng = stream(1, 0, 0, Purpose::Trials);
     let mut reading = || world.begin(&pose, &mut rng).proximity_mm[AHEAD];
     (0..20_000).map(|_| f64::from(reading())).collect()
+}
+
+/// Whether the robot remembers the place that its task needs.
+fn remembers(state: &ForagingState) -> bool {
+    match state.task {
+        Task::EmptyHanded => state.memory.battery.is_some(),
+        _ => state.memory.nest.is_some(),
+    }
 }
 
 fn share(values: &[f64], of: impl Fn(f64) -> bool) -> f64 {
@@ -51,7 +60,8 @@ fn readings_and_percepts_are_in_their_ranges_and_near_the_truth() {
             }
             let percept = world.percept(&state);
             assert!(percept.iter().all(|input| (0.0..=1.0).contains(input)));
-            if let Some(target) = state.target {
+            assert_eq!(percept[REMEMBERS] == 1.0, remembers(&state));
+            if let Some(target) = state.target.or(state.recalled) {
                 assert!((percept[ANGLE] - (target.angle_deg + 60.0) / 120.0).abs() < 1e-6);
                 assert!((percept[DISTANCE] - target.distance_mm / 3500.0).abs() < 1e-6);
             } else {

@@ -351,7 +351,12 @@ impl World for ForagingWorld {
             memory.shift(movement.measured(settings.odometry_noise, rng));
             self.remember(state, memory, rng);
         }
-        let rewarded = reached.or(state.target).or(state.recalled);
+        // Recall alone is rewarded for what it remembers: to the others a target out of sight is a
+        // failure.
+        let recalled = state
+            .recalled
+            .filter(|_| self.primitive(primitive).is_none());
+        let rewarded = reached.or(state.target).or(recalled);
         let smallest = state
             .proximity_mm
             .iter()
