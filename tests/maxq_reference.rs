@@ -4,8 +4,9 @@
 //! Algorithm 2.4 is half a page of recursion. If the two disagree, every result of every run
 //! is about another method. So the trials of agents are replayed by the half page and
 //! compared update by update: N, both errors, all parameters and temperatures. This is done in
-//! all three environments, with flat, complete and mixed trees, with truncated trials, for the
-//! default settings and for each switch.
+//! the environments of the thesis, with flat, complete and mixed trees, with truncated trials, for
+//! the default settings and for each switch; and with the options beyond the thesis, one by one and
+//! together.
 //!
 //! Tolerances: a sum of 32 to 320 products of parameters up to 10 with features that add up
 //! to 1 has an error of about 1e-6 in single precision. The error of an update consists of a
@@ -15,6 +16,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+#[path = "reference/options.rs"]
+mod options;
 mod reference;
 
 use std::collections::BTreeMap;
@@ -92,20 +95,22 @@ fn largest_difference(a: &MaxqQ<'_>, b: &MaxqQ<'_>) -> f64 {
 
 /// Asserts that all trees learn as the reference does. Returns counts of what was seen.
 fn assert_same(lab: &Lab, trees: &[&str]) -> Seen {
+    let all = assert_same_in(lab, trees, &LIMITS);
+    assert!(all.updates > 10_000 && all.distant_updates > 5000);
+    assert!(all.delivered > 8 && all.truncated > 8 && all.pseudo_rewards > 0);
+    all
+}
+
+/// The same in trials with these step limits.
+fn assert_same_in(lab: &Lab, trees: &[&str], limits: &[u32]) -> Seen {
     let mut all = Seen::default();
     for tree in trees {
-        let (worst, seen) = compare(lab, tree, &LIMITS, Reading::BeforeTheLoop);
+        let (worst, seen) = compare(lab, tree, limits, Reading::BeforeTheLoop);
         println!("{worst:.1e} {tree} {seen:?}");
         assert!(seen.worst_error < ERROR_TOLERANCE, "{seen:?} in {tree}");
         assert!(worst < PARAMETER_TOLERANCE, "{worst:e} in {tree}");
-        all.updates += seen.updates;
-        all.distant_updates += seen.distant_updates;
-        all.pseudo_rewards += seen.pseudo_rewards;
-        all.truncated += seen.truncated;
-        all.delivered += seen.delivered;
+        all.add(&seen);
     }
-    assert!(all.updates > 10_000 && all.distant_updates > 5000);
-    assert!(all.delivered > 8 && all.truncated > 8 && all.pseudo_rewards > 0);
     all
 }
 
@@ -187,18 +192,28 @@ fn the_time_of_reading_bootstrap_values_matters_only_in_truncated_trials() {
     }
 }
 
-/// Compares the catalogue with a second copy of Thesis Tables 4.2 and 4.3.
+/// Compares the catalogues with a second copy of Thesis Tables 4.2 and 4.3.
 #[test]
 fn the_catalogue_is_that_of_the_tables() {
-    let lab = Lab::new("environment-1", &[]);
-    for subtask in &lab.experiment.catalogue().subtasks {
+    let labs = ["environment-1", "environment-4"].map(|scenario| Lab::new(scenario, &[]));
+    let counts = labs
+        .each_ref()
+        .map(|lab| lab.experiment.catalogue().subtasks.len());
+    assert_eq!(counts, [12, 12 + 8 + 1], "with eight commands and Recall");
+    let catalogues = labs.iter().map(|lab| lab.experiment.catalogue());
+    for subtask in catalogues.flat_map(|catalogue| &catalogue.subtasks) {
         let row = row(&subtask.name);
         let numbers = |types: maxq_lab::worlds::StateTypes| -> Vec<usize> {
             types.iter().map(|t| t.number()).collect()
         };
         assert_eq!(numbers(subtask.active), row.active, "{}", subtask.name);
         assert_eq!(numbers(subtask.goal()), row.goal, "{}", subtask.name);
-        assert_eq!(subtask.is_composite(), !row.primitive, "{}", subtask.name);
+        assert_eq!(
+            subtask.is_composite(),
+            !row.is_primitive(),
+            "{}",
+            subtask.name
+        );
     }
 }
 
@@ -277,8 +292,15 @@ fn choices_at(
 #[test]
 fn choices_follow_the_values_at_the_temperature_of_the_node() {
     let lab = Lab::new("environment-1", &[]);
+    let [soft, greedy] = assert_choices(&lab, &[FLAT, COMPLETE, REPEATED]);
+    assert!(soft > 10 && greedy > 3, "{soft} soft, {greedy} greedy");
+}
+
+/// Compares the frequencies of choices at some moments of a trial. Returns how many followed
+/// softmax, and how many were epsilon-greedy.
+fn assert_choices(lab: &Lab, trees: &[&str]) -> [usize; 2] {
     let (mut soft, mut greedy) = (0, 0);
-    for tree in [FLAT, COMPLETE, REPEATED] {
+    for tree in trees {
         let mut rng = stream(3, 0, 0, Purpose::Trials);
         let mut agent = lab.agent(lab.untrained(tree));
         for _ in 0..6 {
@@ -301,7 +323,7 @@ fn choices_follow_the_values_at_the_temperature_of_the_node() {
                 break;
             }
             if moment % 40 == 0 {
-                for choices in choices_at(&lab, &agent, &trial) {
+                for choices in choices_at(lab, &agent, &trial) {
                     let several = choices.expected.len() > 1;
                     soft += usize::from(several && !choices.greedy);
                     greedy += usize::from(several && choices.greedy);
@@ -311,7 +333,7 @@ fn choices_follow_the_values_at_the_temperature_of_the_node() {
             agent.advance(&mut trial, STEP_LIMIT, &mut rng, &mut ());
         }
     }
-    assert!(soft > 10 && greedy > 3, "{soft} soft, {greedy} greedy");
+    [soft, greedy]
 }
 
 /// Asserts that every count is within five standard deviations of its expected value.

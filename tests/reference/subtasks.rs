@@ -1,4 +1,4 @@
-//! A second copy of Thesis Tables 4.1 to 4.3 and 4.6 and of Eq. 2.22.
+//! A second copy of Thesis Tables 4.1 to 4.3 and 4.6, with the commands and Recall, and of Eq. 2.22.
 
 use maxq_lab::worlds::foraging::{FeatureSettings, RbfWidth};
 
@@ -8,6 +8,8 @@ pub const DELIVERED: usize = 5;
 const PROXIMITY: [usize; 5] = [0, 1, 2, 3, 4];
 const ANGLE: usize = 5;
 const DISTANCE: usize = 6;
+/// The input after these: whether the robot remembers the place that its task needs.
+pub const REMEMBERS: usize = 7;
 
 /// The inputs of a subtask's value functions (Table 4.6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +22,22 @@ pub enum Input {
     Approach,
     /// The angle, for Turn.
     Turn,
+    /// None, for commands and Recall.
+    Nothing,
+}
+
+/// What a subtask is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A composite subtask. With memory one that `recalls` tells states with and without a
+    /// remembered place apart.
+    Composite { recalls: bool },
+    /// A primitive subtask of Table 4.3.
+    Behaviour,
+    /// A primitive subtask of one command, which is worth nothing itself.
+    Command,
+    /// The primitive subtask that acts as another one does.
+    Recall,
 }
 
 /// A row of Table 4.2 or 4.3.
@@ -31,8 +49,15 @@ pub struct Row {
     pub goal: &'static [usize],
     /// The inputs of its value functions.
     pub input: Input,
-    /// Whether it is primitive.
-    pub primitive: bool,
+    /// What it is.
+    pub kind: Kind,
+}
+
+impl Row {
+    /// Whether the subtask is primitive.
+    pub fn is_primitive(&self) -> bool {
+        !matches!(self.kind, Kind::Composite { .. })
+    }
 }
 
 /// The row of a subtask.
@@ -41,14 +66,17 @@ pub fn row(name: &str) -> Row {
         active,
         goal,
         input,
-        primitive: false,
+        kind: Kind::Composite {
+            recalls: input == Input::Proximity,
+        },
     };
-    let primitive = |active, input| Row {
+    let primitive = |active, input, kind| Row {
         active,
         goal: &[],
         input,
-        primitive: true,
+        kind,
     };
+    let behaviour = |active, input| primitive(active, input, Kind::Behaviour);
     match name {
         "Root" => composite(&[1, 2, 3, 4], &[DELIVERED], Input::Proximity),
         "Capture" => composite(&[1, 2], &[3, 4, DELIVERED], Input::Proximity),
@@ -57,10 +85,13 @@ pub fn row(name: &str) -> Row {
         "VisibleBattery" => composite(&[2], &[3, 4, DELIVERED], Input::Target),
         "FindNest" => composite(&[3], &[4, DELIVERED], Input::Proximity),
         "VisibleNest" => composite(&[4], &[DELIVERED], Input::Target),
-        "Avoid" | "Wander" => primitive(&[1, 2, 3, 4], Input::Proximity),
-        "ApproachBattery" => primitive(&[2], Input::Approach),
-        "ApproachNest" => primitive(&[4], Input::Approach),
-        "Turn" => primitive(&[2, 4], Input::Turn),
+        "Avoid" | "Wander" => behaviour(&[1, 2, 3, 4], Input::Proximity),
+        "ApproachBattery" => behaviour(&[2], Input::Approach),
+        "ApproachNest" => behaviour(&[4], Input::Approach),
+        "Turn" => behaviour(&[2, 4], Input::Turn),
+        "Forward" | "Left" | "Right" | "HardLeft" | "HardRight" | "SpinLeft" | "SpinRight"
+        | "Back" => primitive(&[1, 2, 3, 4], Input::Nothing, Kind::Command),
+        "Recall" => primitive(&[1, 3], Input::Nothing, Kind::Recall),
         other => panic!("{other} is in no table"),
     }
 }
@@ -80,6 +111,7 @@ pub fn phi(input: Input, percept: &[f32], model: &FeatureSettings) -> Vec<f64> {
         .collect(),
         Input::Approach => vec![(ANGLE, model.approach_centres)],
         Input::Turn => vec![(ANGLE, model.turn_centres)],
+        Input::Nothing => Vec::new(),
     };
     let centres: usize = axes.iter().map(|(_, centres)| centres).product();
     let gaussians: Vec<f64> = (0..centres)
