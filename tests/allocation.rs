@@ -21,9 +21,9 @@ const FIRST_TRIALS: usize = 60;
 const TRIALS: usize = 30;
 const STEP_LIMIT: u32 = 400;
 
-/// Runs trials of the first and the last hierarchy of the initial population. Returns for each
-/// the allocations and the time steps of the later trials.
-struct Trials(Scenario);
+/// Runs trials of the first and the last hierarchy of the initial population, up to a step limit.
+/// Returns the allocations and the time steps of each of the later trials.
+struct Trials(Scenario, u32);
 
 impl WorldFn for Trials {
     type Output = Vec<(u64, u32)>;
@@ -42,18 +42,33 @@ impl WorldFn for Trials {
                 let start = experiment.world.draw_start(&mut rng);
                 agent.run_trial(&start, limit, &mut rng, &gate).unwrap()
             };
-            let longest = (0..FIRST_TRIALS).map(|_| trial(STEP_LIMIT).steps).max();
+            let longest = (0..FIRST_TRIALS).map(|_| trial(self.1).steps).max();
             let limit = longest.unwrap();
-            let mut steps = 0;
-            let counted = measure(|| {
-                for _ in 0..TRIALS {
-                    steps += trial(limit).steps;
-                }
+            let later = (0..TRIALS).map(|_| {
+                let mut steps = 0;
+                let counted = measure(|| steps = trial(limit).steps);
+                (counted.count_total, steps)
             });
-            (counted.count_total, steps)
+            later.collect::<Vec<_>>()
         });
-        counts.to_vec()
+        counts.concat()
     }
+}
+
+/// The later trials in a scenario.
+fn trials(name: &str, settings: &[&str], limit: u32) -> Vec<(u64, u32)> {
+    let settings: Vec<_> = settings.iter().map(|&setting| setting.to_owned()).collect();
+    let scenario = Scenario::load(name).unwrap();
+    let scenario = scenario.with_settings(&settings).unwrap();
+    let world = scenario.world.clone();
+    world.build(Trials(scenario, limit)).unwrap()
+}
+
+fn assert_no_allocation(name: &str, trials: &[(u64, u32)]) {
+    let steps: u32 = trials.iter().map(|trial| trial.1).sum();
+    assert!(steps > 200, "{name}: {steps} steps are too few");
+    let allocations: u64 = trials.iter().map(|trial| trial.0).sum();
+    assert_eq!(allocations, 0, "{name}, in {steps} steps");
 }
 
 #[test]
@@ -65,12 +80,31 @@ fn a_control_step_allocates_no_memory() {
         "taxi",
         "cliff",
     ] {
-        let scenario = Scenario::load(name).unwrap();
-        for (allocations, steps) in scenario.world.clone().build(Trials(scenario)).unwrap() {
-            assert!(steps > 100, "{name}: {steps} steps are too few");
-            assert_eq!(allocations, 0, "{name}, in {steps} steps");
-        }
+        assert_no_allocation(name, &trials(name, &[], STEP_LIMIT));
     }
+}
+
+/// With replay an agent holds the whole trial, and keeps the room of a trial of up to 256 states:
+/// 255 steps.
+#[test]
+fn a_control_step_allocates_no_memory_where_trials_are_repeated() {
+    for name in ["environment-1-timed", "environment-4", "environment-6"] {
+        assert_no_allocation(name, &trials(name, &[], 255));
+    }
+    let settings = ["learning.replay=1", "learning.persistence=3"];
+    assert_no_allocation("taxi", &trials("taxi", &settings, 255));
+}
+
+/// The room of a longer trial is given back and grows again in the next one. It doubles each time,
+/// so that a trial allocates a few dozen times however long it is.
+#[test]
+fn a_long_trial_that_is_repeated_allocates_a_few_dozen_times() {
+    let mut long = 0;
+    for (allocations, steps) in trials("environment-6", &[], 2000) {
+        assert!(allocations < 100, "{allocations} in {steps} steps");
+        long += usize::from(steps > 1000);
+    }
+    assert!(long > 3, "{long} long trials");
 }
 
 /// Counts the allocations for selection probabilities in this many states of each type.

@@ -11,9 +11,9 @@ mod common;
 
 use std::time::Duration;
 
-use common::{Record, record, short, threads, wait_until};
+use common::{Record, SHORT, record, short, stop_after, threads, wait_until};
 use crossbeam_channel::never;
-use maxq_lab::lab::{Activity, Controls, Event, Run, RunOptions, read_events, start};
+use maxq_lab::lab::{Activity, Controls, Event, Run, RunOptions, read_events, resume, start};
 use maxq_lab::random::{Purpose, stream};
 use maxq_lab::scenario::Scenario;
 use rand::RngExt;
@@ -42,11 +42,13 @@ fn the_number_of_threads_changes_nothing() {
 #[test]
 fn different_seeds_give_different_runs() {
     let [one, other] = [1, 2].map(|seed| record(&short(&[]), seed, &threads(2)));
-    let generations = |record: &Record| {
-        let text = String::from_utf8(record.events.clone()).unwrap();
-        text.split_once('\n').unwrap().1.to_owned()
-    };
     assert_ne!(generations(&one), generations(&other));
+}
+
+/// The events of a run after the first, which is its scenario and seed.
+fn generations(record: &Record) -> String {
+    let text = String::from_utf8(record.events.clone()).unwrap();
+    text.split_once('\n').unwrap().1.to_owned()
 }
 
 #[test]
@@ -156,12 +158,38 @@ fn every_switch_is_deterministic_and_matters() {
         "evolution.grow_probability=0.5",
         "evolution.variation=random_trees",
         "evolution.variation=none",
+        r#"learning.composite_reward={"per_step":-0.1}"#,
+        "learning.exit_value=continuation",
+        "learning.bootstrap=expected",
+        "learning.persistence=3",
+        "learning.replay=1",
+        "learning.composite_temperature=0.3",
+        "learning.cool_on=trial",
+        "evolution.reset=child",
+        r#"world.foraging.memory={"odometry_noise":0.1}"#,
+        "world.foraging.arena.transparent_walls_mm=[[500,900,1500,900]]",
         "world.foraging.features.rbf_width=variance",
     ] {
         let scenario = short(&[COOLING, switch]);
         let one = record(&scenario, 1, &threads(1));
         let two = record(&scenario, 1, &threads(2));
         one.assert_same(&two, switch);
-        assert!(one.events != default.events, "{switch} has no effect");
+        // The first line says which scenario it is.
+        let (with, without) = (generations(&one), generations(&default));
+        assert!(with != without, "{switch} has no effect");
     }
+}
+
+/// The yard, with all options beyond the thesis, on one thread and on two, interrupted or not.
+#[test]
+fn all_options_together_are_deterministic_and_survive_an_interruption() {
+    let settings: Vec<_> = SHORT.iter().map(|&setting| setting.to_owned()).collect();
+    let yard = Scenario::load("environment-4").unwrap();
+    let yard = yard.with_settings(&settings).unwrap();
+    let one = record(&yard, 1, &threads(1));
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("run");
+    stop_after(start(yard, 1, &folder, &threads(2)).unwrap(), 3);
+    resume(&folder, None, &threads(2)).unwrap().join().unwrap();
+    Record::of(&folder).assert_same(&one, "on two threads, interrupted");
 }

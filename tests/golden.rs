@@ -10,7 +10,7 @@
 
 mod common;
 
-use common::{record, threads};
+use common::{SHORT_TRAINING, record, threads};
 use maxq_lab::evolution::Workers;
 use maxq_lab::lab::{Algorithm, AnyExperiment, GivenPolicy, LearnProtocol, experiment};
 use maxq_lab::learning::Gate;
@@ -23,7 +23,24 @@ const EVOLUTION: &[(&str, u32)] = &[
     ("taxi-fickle", 0xc546_9801),
     ("cliff", 0x822e_bc69),
     ("four-rooms", 0x71ee_36be),
+    ("environment-4", 0x05f4_b3ea),
+    ("environment-6", 0x3fa2_e4d4),
 ];
+
+/// Options beyond the thesis that work in every world.
+const OPTIONS: &[&str] = &[
+    r#"learning.composite_reward={"per_step":-0.1}"#,
+    "learning.exit_value=continuation",
+    "learning.bootstrap=expected",
+    "learning.persistence=3",
+    "learning.replay=1",
+    "learning.composite_temperature=0.3",
+    "learning.cool_on=trial",
+    "evolution.reset=child",
+];
+
+/// The same for `taxi` with all of them.
+const TAXI_WITH_OPTIONS: u32 = 0x4e85_8cd5;
 
 /// CRC-32 of everything that a learner found in 5000 steps with seed 1, as JSON.
 const LEARNING: &[(&str, &str, u32)] = &[
@@ -45,22 +62,41 @@ fn scenario(name: &str) -> Scenario {
     if name == "smoke" {
         return scenario;
     }
-    let short = [
+    let mut short = vec![
         "evolution.trials_per_generation=8",
         "evolution.generation_limit=4",
     ];
-    scenario.with_settings(&short.map(String::from)).unwrap()
+    if name.starts_with("environment") {
+        short.extend(SHORT_TRAINING);
+        short.push("evolution.trial_step_limit=400");
+    }
+    with(scenario, &short)
+}
+
+fn with(scenario: Scenario, settings: &[&str]) -> Scenario {
+    let settings: Vec<_> = settings.iter().map(|&setting| setting.to_owned()).collect();
+    scenario.with_settings(&settings).unwrap()
 }
 
 #[test]
 fn evolution_gives_the_published_bits() {
-    for &(name, golden) in EVOLUTION {
-        let found = crc32fast::hash(&record(&scenario(name), 1, &threads(2)).events);
-        assert_eq!(
-            found, golden,
-            "events.jsonl of {name} has CRC-32 {found:#010x}, not {golden:#010x}"
-        );
+    let mut runs: Vec<_> = EVOLUTION
+        .iter()
+        .map(|&(name, golden)| (name, scenario(name), golden))
+        .collect();
+    let taxi = with(scenario("taxi"), OPTIONS);
+    runs.push(("taxi with options", taxi, TAXI_WITH_OPTIONS));
+    let mut different = Vec::new();
+    for (name, scenario, golden) in runs {
+        let found = crc32fast::hash(&record(&scenario, 1, &threads(2)).events);
+        if found != golden {
+            different.push(format!("{name}: {found:#010x}, not {golden:#010x}"));
+        }
     }
+    assert!(
+        different.is_empty(),
+        "CRC-32 of events.jsonl: {different:?}"
+    );
 }
 
 #[test]

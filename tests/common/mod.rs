@@ -12,13 +12,22 @@ use std::time::{Duration, Instant};
 use maxq_lab::lab::{Event, Outcome, Run, RunOptions, start};
 use maxq_lab::scenario::Scenario;
 
-/// Settings that make `smoke` run in a few hundredths of a second.
-pub const SHORT: &[&str] = &[
+/// Settings for a short training of the primitive subtasks of foraging.
+pub const SHORT_TRAINING: [&str; 5] = [
     "world.foraging.primitive_training.avoid.steps=2000",
     "world.foraging.primitive_training.wander.steps=2000",
     "world.foraging.primitive_training.approach_battery.steps=2000",
     "world.foraging.primitive_training.approach_nest.steps=2000",
     "world.foraging.primitive_training.turn.steps=2000",
+];
+
+/// Settings that make `smoke` run in a few hundredths of a second.
+pub const SHORT: &[&str] = &[
+    SHORT_TRAINING[0],
+    SHORT_TRAINING[1],
+    SHORT_TRAINING[2],
+    SHORT_TRAINING[3],
+    SHORT_TRAINING[4],
     "evolution.trials_per_generation=4",
     "evolution.trial_step_limit=300",
     "evolution.generation_limit=6",
