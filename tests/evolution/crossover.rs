@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maxq_lab::evolution::{Individual, Inherited, Origin, Parent, crossover};
 use maxq_lab::hierarchy::{parse, to_text};
-use maxq_lab::learning::CompositeValues;
+use maxq_lab::learning::{CompositeValues, Hierarchy};
 use maxq_lab::random::{Purpose, stream};
-use maxq_lab::scenario::{Inheritance, LearningSettings, Scenario};
+use maxq_lab::scenario::{Inheritance, LearningSettings, Reset, Scenario};
 use maxq_lab::worlds::{Catalogue, World};
 use proptest::prelude::*;
 
@@ -67,6 +67,38 @@ pub fn path(tree: &Nested, place: usize) -> BTreeSet<&'static str> {
     above.into_iter().collect()
 }
 
+/// The parent of a place in preorder, and which of its children stands there.
+pub fn parent_of(tree: &Nested, place: usize) -> (&'static str, usize) {
+    let nodes = tree.nodes();
+    let child: *const Nested = nodes[place];
+    let of = |node: &&Nested| {
+        let mut children = node.children.iter();
+        let at = children.position(|other| std::ptr::eq(other, child));
+        at.map(|at| (node.name, at))
+    };
+    nodes.iter().find_map(of).unwrap()
+}
+
+/// Asserts that a composite subtask has kept all that it had learned, but what it knows of the
+/// child at a place, which is new.
+pub fn assert_only_new(
+    found: &CompositeValues,
+    old: &CompositeValues,
+    new: &CompositeValues,
+    place: usize,
+) -> Result<(), TestCaseError> {
+    let mut expected = old.vectors();
+    let new = new.vectors().remove(place);
+    if old.children() == found.children() {
+        expected[place] = new;
+    } else {
+        expected.insert(place, new);
+    }
+    prop_assert_eq!(found.vectors(), expected);
+    prop_assert_eq!(found.temperature, old.temperature);
+    Ok(())
+}
+
 fn site(origin: &Origin) -> (&Parent, &Parent, &[Inherited], &[String]) {
     match origin {
         Origin::Crossover {
@@ -84,9 +116,11 @@ fn site(origin: &Origin) -> (&Parent, &Parent, &[Inherited], &[String]) {
 fn check_offspring(
     child: &Individual,
     [receiver, donor]: [&Individual; 2],
-    darwinian: bool,
+    scenario: &Scenario,
     catalogue: &Catalogue,
 ) -> Result<(), TestCaseError> {
+    let darwinian = scenario.evolution.inheritance == Inheritance::Darwinian;
+    let only_child = scenario.evolution.reset == Reset::Child;
     let (to, from, inherited, reset) = site(&child.origin);
     let (old, given) = (nested(receiver, catalogue), nested(donor, catalogue));
     prop_assert_eq!((to.id, from.id), (receiver.id, donor.id));
@@ -96,7 +130,12 @@ fn check_offspring(
     let tree = nested(child, catalogue);
     prop_assert_eq!(&tree, &expected);
 
-    let on_path = path(&tree, to.site);
+    let on_path = if only_child {
+        BTreeSet::new()
+    } else {
+        path(&tree, to.site)
+    };
+    let (above, place) = parent_of(&tree, to.site);
     let graft: BTreeSet<_> = given.nodes()[from.site]
         .nodes()
         .iter()
@@ -114,23 +153,26 @@ fn check_offspring(
     let (mut expected_inherited, mut expected_reset) = (Vec::new(), Vec::new());
     for node in composites {
         let name = node.name;
+        let subtask = catalogue.find(name).unwrap();
+        let children = node
+            .children
+            .iter()
+            .map(|child| catalogue.find(child.name).unwrap());
+        let children: Vec<_> = children.collect();
+        let new = CompositeValues::new(subtask, &children, catalogue, &LearningSettings::default());
         if darwinian || on_path.contains(name) {
             expected_reset.push(name.to_owned());
-            let subtask = catalogue.find(name).unwrap();
-            let children = node
-                .children
-                .iter()
-                .map(|child| catalogue.find(child.name).unwrap());
-            let children: Vec<_> = children.collect();
-            let new =
-                CompositeValues::new(subtask, &children, catalogue, &LearningSettings::default());
             prop_assert_eq!(found[name], &new);
         } else {
             let (parent, from) = match graft.contains(name) {
                 true => (given[name], donor.id),
                 false => (old[name], receiver.id),
             };
-            prop_assert_eq!(found[name], parent, "{} has lost what it had learned", name);
+            if only_child && name == above {
+                assert_only_new(found[name], parent, &new, place)?;
+            } else {
+                prop_assert_eq!(found[name], parent, "{} has lost what it had learned", name);
+            }
             expected_inherited.push(Inherited {
                 subtask: name.to_owned(),
                 from,
@@ -149,8 +191,12 @@ proptest! {
     fn offspring_are_valid_whole_and_keep_what_they_should(
         seed in any::<u64>(),
         darwinian in any::<bool>(),
+        only_child in any::<bool>(),
     ) {
         let mut scenario = Scenario::load("environment-1").unwrap();
+        if only_child {
+            scenario.evolution.reset = Reset::Child;
+        }
         if darwinian {
             scenario.evolution.inheritance = Inheritance::Darwinian;
         }
@@ -170,8 +216,8 @@ proptest! {
             return Ok(());
         };
         prop_assert_eq!((first.id, second.id), (20, 21));
-        check_offspring(&first, [&a, &b], darwinian, catalogue)?;
-        check_offspring(&second, [&b, &a], darwinian, catalogue)?;
+        check_offspring(&first, [&a, &b], &scenario, catalogue)?;
+        check_offspring(&second, [&b, &a], &scenario, catalogue)?;
         let (new_a, new_b) = (nested(&first, catalogue), nested(&second, catalogue));
         prop_assert!(new_a.obeys_the_rules(), "{}", new_a.text());
         prop_assert!(new_b.obeys_the_rules(), "{}", new_b.text());
@@ -211,6 +257,66 @@ fn every_valid_pair_of_sites_is_as_likely_as_any_other() {
         counts[pair.expect("a valid pair")] += 1;
     }
     assert_frequencies(&counts, &vec![1.0 / pairs.len() as f64; pairs.len()]);
+}
+
+/// `reset: child`, by hand: every parameter of the receiver is -1 and every one of the donor -2.
+/// Only what the parent knows of the new child starts again.
+#[test]
+fn a_new_child_alone_is_reset_if_the_scenario_says_so() {
+    let mut scenario = Scenario::load("environment-1").unwrap();
+    scenario.evolution.reset = Reset::Child;
+    let catalogue = WORLD.catalogue();
+    let marked = |id, text, mark| {
+        let tree = parse(text, catalogue).unwrap();
+        let individual = learned(id, tree, catalogue, &mut chance(id));
+        let (tree, mut values) = individual.hierarchy.into_parts();
+        for (node, value) in values.iter_mut().enumerate() {
+            let Some(value) = value else { continue };
+            let mut vectors = value.vectors();
+            vectors
+                .iter_mut()
+                .flatten()
+                .flatten()
+                .for_each(|parameter| *parameter = mark);
+            let children: Vec<_> = tree.children(node).map(|c| tree.subtask(c)).collect();
+            let subtask = tree.subtask(node);
+            let all = CompositeValues::from_vectors(subtask, &children, catalogue, -mark, &vectors);
+            *value = all.unwrap();
+        }
+        let hierarchy = Hierarchy::from_parts(tree, values).unwrap();
+        Individual {
+            hierarchy,
+            ..individual
+        }
+    };
+    let a = marked(1, "(Root (Capture Avoid Wander Turn) Wander)", -1.0);
+    let b = marked(
+        2,
+        "(Root Avoid (VisibleBattery ApproachBattery Turn))",
+        -2.0,
+    );
+    let mut draws = stream(1, 0, 0, Purpose::Breeding);
+    let wanted = "(Root (Capture Avoid (VisibleBattery ApproachBattery Turn) Turn) Wander)";
+    let mut offspring = std::iter::repeat_with(|| {
+        crossover(&a, &b, [3, 4], &scenario, catalogue, &mut draws).unwrap()
+    });
+    let [child, _] = offspring
+        .find(|[child, _]| to_text(child.hierarchy.tree(), catalogue) == wanted)
+        .unwrap();
+    let values = values(&child, catalogue);
+    let marks = |name: &str| -> Vec<f32> {
+        let vectors = values[name].vectors();
+        let mark = |[inside, outside]: &[Vec<f32>; 2]| {
+            assert!(inside.iter().chain(outside).all(|one| *one == inside[0]));
+            inside[0]
+        };
+        vectors.iter().map(mark).collect()
+    };
+    assert_eq!(marks("Root"), [-1.0, -1.0]);
+    assert_eq!(marks("Capture"), [-1.0, 0.123, -1.0]);
+    assert_eq!(marks("VisibleBattery"), [-2.0, -2.0]);
+    let temperatures = ["Root", "Capture", "VisibleBattery"].map(|name| values[name].temperature);
+    assert_eq!(temperatures, [1.0, 1.0, 2.0]);
 }
 
 /// A hierarchy that is too long to be read again would end the run that it is saved in.

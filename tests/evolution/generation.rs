@@ -233,6 +233,52 @@ fn evolution_is_over_at_the_limit_or_when_it_has_converged() {
     assert!(is_over([ONE; 8], 1), "converged");
 }
 
+/// Two trials of two steps; from the second generation on two individuals run one of them.
+#[test]
+fn evolution_is_over_with_the_generation_that_reaches_the_limit_of_control_steps() {
+    let after = [1000 + 8 * 4, 1000 + 8 * 4 + 6 * 4 + 2 * 2];
+    for (limit, generations) in [
+        (1, 0),
+        (1001, 1),
+        (after[0], 1),
+        (after[0] + 1, 2),
+        (after[1], 2),
+    ] {
+        let mut scenario = still_scenario();
+        scenario.evolution.stop_on_convergence = false;
+        scenario.evolution.control_step_limit = Some(limit);
+        let experiment = experiment(scenario);
+        let first = individuals([ONE; 8], experiment.catalogue(), &mut chance(1));
+        let first = state(first, experiment.catalogue(), 0);
+        let (workers, gate) = (Workers::new(1).unwrap(), Gate::default());
+        let evolution = Evolution::resume(&experiment, &workers, 1, first, &gate);
+        let mut evolution = evolution.unwrap();
+        let mut lived = 0;
+        while !evolution.is_over() {
+            let record = evolution.step(&gate, |_| ()).unwrap();
+            assert_eq!(record.control_steps, after[lived]);
+            lived += 1;
+        }
+        assert_eq!(lived, generations, "limit {limit}");
+    }
+}
+
+#[test]
+fn evolution_goes_on_after_convergence_if_the_scenario_says_so() {
+    for stops in [true, false] {
+        let mut scenario = still_scenario();
+        scenario.evolution.stop_on_convergence = stops;
+        scenario.evolution.generation_limit = 2;
+        let experiment = experiment(scenario);
+        let first = individuals([ONE; 8], experiment.catalogue(), &mut chance(1));
+        let (record, after) = step(&experiment, 1, state(first, experiment.catalogue(), 0));
+        assert_eq!((record.converged, after.converged), (stops, stops));
+        assert_eq!(after.is_over(&experiment.scenario.evolution), stops);
+        let (_, after) = step(&experiment, 1, after);
+        assert!(after.is_over(&experiment.scenario.evolution), "the limit");
+    }
+}
+
 #[test]
 fn differences_are_those_to_the_best_averaged_over_the_better_half() {
     let trees = [

@@ -6,12 +6,12 @@ use maxq_lab::evolution::{Individual, Mutation, Origin, crossover, mutated};
 use maxq_lab::hierarchy::parse;
 use maxq_lab::learning::CompositeValues;
 use maxq_lab::random::{Purpose, stream};
-use maxq_lab::scenario::{LearningSettings, Scenario};
+use maxq_lab::scenario::{LearningSettings, Reset, Scenario};
 use maxq_lab::worlds::{Catalogue, World};
 use proptest::prelude::*;
 use rand::Rng;
 
-use super::crossover::{WORLD, nested, path, values};
+use super::crossover::{WORLD, assert_only_new, nested, parent_of, path, values};
 use super::trees::{Nested, chance, is_composite, valid_tree};
 use super::{assert_frequencies, experiment, individuals, learned, state, step, still_scenario};
 
@@ -114,12 +114,19 @@ proptest! {
     }
 
     #[test]
-    fn growth_adds_one_subtree_and_resets_the_path_to_it(seed in any::<u64>()) {
+    fn growth_adds_one_subtree_and_resets_the_path_to_it_or_the_child(
+        seed in any::<u64>(),
+        only_child in any::<bool>(),
+    ) {
         let catalogue = WORLD.catalogue();
         let old = any_individual(seed, catalogue);
         let before = nested(&old, catalogue);
         let mut draws = stream(seed, 0, 0, Purpose::Breeding);
-        let new = mutated(old.clone(), &scenario(0.0, 1.0), catalogue, &mut draws);
+        let mut settings = scenario(0.0, 1.0);
+        if only_child {
+            settings.evolution.reset = Reset::Child;
+        }
+        let new = mutated(old.clone(), &settings, catalogue, &mut draws);
         let after = nested(&new, catalogue);
         prop_assert!(after.obeys_the_rules(), "{}", after.text());
         let [Mutation::Grown { parent, subtree }] = new.origin.mutations() else {
@@ -138,8 +145,14 @@ proptest! {
         let grown = nodes[place].name;
         prop_assert_eq!(above.children.iter().filter(|child| child.name == grown).count(), 1);
         let (kept, known) = (values(&new, catalogue), values(&old, catalogue));
+        let (_, place) = parent_of(&after, place);
         for node in nodes.iter().filter(|node| is_composite(node.name)) {
-            match known.get(node.name).filter(|_| !on_path.contains(node.name)) {
+            let inherits = only_child || !on_path.contains(node.name);
+            match known.get(node.name).filter(|_| inherits) {
+                Some(value) if only_child && node.name == parent => {
+                    let new = fresh(node.name, &node.children, catalogue);
+                    assert_only_new(kept[node.name], value, &new, place)?;
+                }
                 Some(value) => prop_assert_eq!(kept[node.name], *value),
                 None => {
                     let new = fresh(node.name, &node.children, catalogue);

@@ -2,7 +2,7 @@
 
 use maxq_lab::scenario::{Scenario, ScenarioError};
 
-use super::common::{program, short, smoke};
+use super::common::{output, program, short, smoke, stderr};
 use super::{assert_says, refused};
 
 /// A setting of `smoke`, and the place of the rule that it breaks.
@@ -177,6 +177,37 @@ const RULES: &[(&str, &str)] = &[
     (
         "learning.initial_parameter=1001",
         "learning.initial_parameter",
+    ),
+    ("learning.persistence=0", "learning.persistence"),
+    ("learning.persistence=1000000000", "learning.persistence"),
+    ("learning.replay=1000000000", "learning.replay"),
+    (
+        r#"learning.composite_reward={"per_step":0}"#,
+        "learning.composite_reward.per_step",
+    ),
+    (
+        r#"learning.composite_reward={"per_step":1}"#,
+        "learning.composite_reward.per_step",
+    ),
+    (
+        r#"learning.composite_reward={"per_step":-1e300}"#,
+        "learning.composite_reward.per_step",
+    ),
+    (
+        "learning.composite_temperature=0",
+        "learning.composite_temperature",
+    ),
+    (
+        "evolution.control_step_limit=0",
+        "evolution.control_step_limit",
+    ),
+    (
+        r#"world.foraging.memory={"odometry_noise":-0.1}"#,
+        "world.foraging.memory.odometry_noise",
+    ),
+    (
+        "world.foraging.arena.transparent_walls_mm=[[0, 0, 9, 9], [0, 0, 2001, 9]]",
+        "world.foraging.arena.transparent_walls_mm[1]",
     ),
     ("evolution.population_size=2", "evolution.population_size"),
     (
@@ -411,10 +442,45 @@ fn malformed_settings_are_rejected() {
             ],
         ),
         ("name.first=x", &["it is a single value"]),
+        (
+            r#"learning.composite_reward={"per_step":"NaN"}"#,
+            &["learning.composite_reward", "\"NaN\""],
+        ),
+        (
+            r#"learning.composite_reward={"per_step":1e999}"#,
+            &["learning.composite_reward"],
+        ),
+        (
+            "learning.composite_reward=per_step",
+            &["learning.composite_reward"],
+        ),
+        (
+            "learning.exit_value=goal",
+            &[
+                "learning.exit_value",
+                "allowed: pseudo_reward, continuation",
+            ],
+        ),
     ] {
         let said = refused(program().args(["run", "smoke", "--set", setting]));
         assert_says(&said, &[&format!("--set {setting}: ")]);
         assert_says(&said, parts);
+    }
+}
+
+/// Recall needs a memory, Forward needs commands.
+#[test]
+fn a_hierarchy_has_only_subtasks_that_the_world_has() {
+    for (subtask, setting) in [
+        ("Recall", r#"world.foraging.memory={"odometry_noise":0}"#),
+        ("Forward", "world.foraging.commands=true"),
+    ] {
+        let tree = format!("evolution.initial_population.2=(Root Wander {subtask})");
+        let said = refused(program().args(["check", "smoke", "--set", &tree]));
+        let parts = ["evolution.initial_population[2]: ", subtask, "allowed: "];
+        assert_says(&said, &parts);
+        let allowed = output(program().args(["check", "smoke", "--set", &tree, "--set", setting]));
+        assert!(allowed.status.success(), "{}", stderr(&allowed));
     }
 }
 
