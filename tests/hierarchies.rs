@@ -12,7 +12,8 @@
 mod trees;
 
 use maxq_lab::hierarchy::{
-    Glyphs, Summary, able, canonical, check, draw, parse, structural_difference, to_dot, to_text,
+    Glyphs, Summary, able, canonical, check, draw, folded_lines, lines, parse,
+    structural_difference, to_dot, to_text,
 };
 use maxq_lab::worlds::World;
 use maxq_lab::worlds::foraging::ForagingWorld;
@@ -335,4 +336,33 @@ fn drawings_of_hierarchies_match_their_snapshots() {
         let flat = draw(&flat, catalogue, Glyphs::Unicode).join("\n");
         insta::assert_snapshot!("hierarchy_flat", flat);
     });
+}
+
+/// Every node keeps its place: keys and clicks go from node to node in folded lines too.
+#[test]
+fn primitive_siblings_share_lines() {
+    let world = world();
+    let catalogue = world.catalogue();
+    let text = "(Root (Capture Avoid Wander ApproachBattery Turn) ApproachNest Avoid)";
+    let tree = parse(text, catalogue).unwrap();
+    let name = |node: usize| tree.subtask(node).name(catalogue).to_owned();
+    let folded = folded_lines(&tree, catalogue, Glyphs::Unicode, 36, name);
+    let drawn = folded.iter().map(|line| {
+        let texts = line.nodes.iter().map(|text| text.text.as_str());
+        line.branches.clone() + &texts.collect::<Vec<_>>().join("  ")
+    });
+    assert_eq!(
+        drawn.collect::<Vec<_>>(),
+        [
+            "Root",
+            "├─ Capture",
+            "│  └─ Avoid  Wander  ApproachBattery",
+            "│     Turn",
+            "└─ ApproachNest  Avoid",
+        ]
+    );
+    assert_eq!(folded[2].at(13), Some(3), "Wander");
+    assert_eq!(folded[2].at(2), Some(2), "the first");
+    assert!(folded[3].has(5) && !folded[2].has(5));
+    assert_eq!(lines(&tree, catalogue, Glyphs::Ascii).len(), 8);
 }

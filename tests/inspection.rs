@@ -18,7 +18,7 @@ use maxq_lab::lab::inspection::{
     Archive, ArchiveError, InspectedIndividual, MapView, Quantity, lineage,
 };
 use maxq_lab::lab::{
-    AnyExperiment, Event, Keep, RunOptions, lasting_experiment, read_events, start,
+    AnyExperiment, Event, Keep, RunOptions, experiment, lasting_experiment, read_events, start,
 };
 use maxq_lab::scenario::Scenario;
 
@@ -356,4 +356,43 @@ fn inspection_leaves_the_run_unchanged() {
     let _ = run.experiment.profiles(individual, 0);
     assert!(*state == copy);
     common::Record::of(&run.path()).assert_same(&before, "after looking");
+}
+
+/// Commands and Recall have no learned values, and no profiles that would pretend so.
+#[test]
+fn commands_and_imitations_have_nothing_learned() {
+    let told = |scenario, name| {
+        let experiment = experiment(Scenario::load(scenario).unwrap(), 1).unwrap();
+        let subtask = experiment.catalogue().find(name).unwrap();
+        experiment.nothing_learned(subtask)
+    };
+    assert_eq!(
+        told("environment-4", "Back").unwrap(),
+        "always executes (-300,-300); it has nothing to choose and learns nothing"
+    );
+    assert_eq!(
+        told("environment-4", "Recall").unwrap(),
+        "has no values of its own; where the place is remembered, it acts as ApproachBattery in \
+         state type 1 and as ApproachNest in state type 3, else as Wander"
+    );
+    for name in ["Avoid", "Turn", "Capture"] {
+        assert_eq!(told("environment-4", name), None);
+    }
+    assert_eq!(told("taxi", "Pickup"), None);
+}
+
+/// The line of descent has a mean in every generation, the last one that of the individual.
+#[test]
+fn the_course_of_a_line_ends_with_the_individual() {
+    let run = Finished::new(short(&[]), Keep::All);
+    let best = &run.records.last().unwrap().individuals[0];
+    let lineage = lineage(&run.records, best.id).unwrap();
+    let course = lineage.course(&run.records);
+    let generations: Vec<_> = course.iter().map(|&(generation, _)| generation).collect();
+    let all = run.records.iter().map(|record| record.generation);
+    assert_eq!(generations, all.collect::<Vec<_>>());
+    assert_eq!(course.last().unwrap().1, best.mean_steps());
+    let first = lineage.line().last().unwrap();
+    let trials = best.scored() as f64;
+    assert_eq!(course[0].1, first.fitness_steps as f64 / trials);
 }

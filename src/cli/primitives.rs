@@ -13,7 +13,8 @@ use crate::worlds::Kind;
 /// Train the primitive subtasks and print their action values.
 ///
 /// Prints the greedy action and the value of every action for typical inputs (Thesis Figure
-/// 4.3). Actions are numbered as in Thesis Table 4.4.
+/// 4.3). Actions are numbered as in Thesis Table 4.4. A command has only one action, and
+/// Recall acts as others do: they learn nothing.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -41,6 +42,9 @@ struct Primitive {
     subtask: String,
     actions: Vec<String>,
     rows: Vec<Row>,
+    /// Why it has learned nothing of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nothing_learned: Option<String>,
 }
 
 /// The values of one input.
@@ -79,8 +83,12 @@ impl Args {
         let primitives = experiment.train(0, workers, gate)?;
         let catalogue = experiment.catalogue();
         let primitives = primitives.all().iter().map(|primitive| {
-            let probes = experiment.probes(primitive.subtask).into_iter();
-            let rows = probes.map(|probe| {
+            let nothing_learned = experiment.nothing_learned(primitive.subtask);
+            let probes = match nothing_learned {
+                Some(_) => Vec::new(),
+                None => experiment.probes(primitive.subtask),
+            };
+            let rows = probes.into_iter().map(|probe| {
                 let q = primitive.action_values(experiment.encoder(), &probe.percept);
                 Row {
                     label: probe.label,
@@ -97,6 +105,7 @@ impl Args {
                     Kind::Composite { .. } => Vec::new(),
                 },
                 rows: rows.collect(),
+                nothing_learned,
             }
         });
         Ok(Report {
@@ -111,6 +120,10 @@ fn describe(report: &Report) -> String {
     let mut text = format!("{}, seed {}\n", report.scenario, report.seed);
     for primitive in &report.primitives {
         // Writing to a string cannot fail.
+        if let Some(why) = &primitive.nothing_learned {
+            let _ = writeln!(text, "\n{} {why}", primitive.subtask);
+            continue;
+        }
         let _ = writeln!(text, "\n{}", primitive.subtask);
         let labels = primitive.rows.iter().map(|row| row.label.len());
         let width = labels.max().unwrap_or(0);

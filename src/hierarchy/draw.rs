@@ -31,7 +31,7 @@ impl Glyphs {
     }
 
     /// The branch to a child, the branch to the last child, a line that passes by.
-    fn signs(self) -> [&'static str; 3] {
+    pub(super) fn signs(self) -> [&'static str; 3] {
         match self {
             Self::Unicode => ["├─ ", "└─ ", "│  "],
             Self::Ascii => ["|- ", "`- ", "|  "],

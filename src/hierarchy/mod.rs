@@ -2,6 +2,7 @@
 
 mod compare;
 mod draw;
+mod fold;
 mod generate;
 mod text;
 mod tree;
@@ -9,6 +10,7 @@ mod typing;
 
 pub use compare::{Summary, structural_difference, without_repeats};
 pub use draw::{Glyphs, draw, to_dot};
+pub use fold::{TreeLine, TreeText, folded_lines, lines};
 pub(crate) use generate::random_subtree;
 pub use generate::{complete, flat, random_tree};
 pub use text::{MAX_TEXT_BYTES, TextError, canonical, parse, to_text};

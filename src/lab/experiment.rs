@@ -75,6 +75,10 @@ pub trait AnyExperiment: Send + Sync {
         checkpoint.state(self.scenario(), self.catalogue())
     }
 
+    /// Tells why a primitive subtask has no learned values of its own; `None` if it has some, and
+    /// for a composite subtask.
+    fn nothing_learned(&self, subtask: SubtaskId) -> Option<String>;
+
     /// Trains one set of primitive subtasks; `set` numbers independently trained sets.
     ///
     /// # Errors

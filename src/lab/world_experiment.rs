@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use super::evaluate::{Protocol, Scored, evaluate};
 use super::experiment::AnyExperiment;
 use super::inspection::{
-    InspectedIndividual, MapView, PolicyMap, Profile, Rollout, Start, WorldRollout, policy_map,
-    profiles,
+    InspectedIndividual, MapView, PolicyMap, Profile, Rollout, Start, WorldRollout,
+    nothing_learned, policy_map, profiles,
 };
 use super::learn::{LearnError, LearnProtocol, Learned, learn};
 use super::learner::Algorithm;
@@ -22,7 +22,7 @@ use crate::learning::{
 };
 use crate::random::{Purpose, stream};
 use crate::rules::Problem;
-use crate::scenario::Scenario;
+use crate::scenario::{PrimitiveLearning, Scenario};
 use crate::worlds::scene::{Scenery, Scenic};
 use crate::worlds::{Catalogue, Probe, SubtaskId, WorldFn};
 
@@ -172,6 +172,18 @@ impl<W: Scenic + 'static> AnyExperiment for WorldExperiment<W> {
             .collect()
     }
 
+    fn nothing_learned(&self, subtask: SubtaskId) -> Option<String> {
+        let Experiment {
+            world, scenario, ..
+        } = &self.experiment;
+        if world.catalogue().subtask(subtask).is_composite() {
+            return None;
+        }
+        let frozen = scenario.learning.primitive_learning == PrimitiveLearning::Frozen;
+        let learns = world.training(subtask).is_some() || !frozen;
+        nothing_learned(world.catalogue(), subtask, learns)
+    }
+
     fn train(&self, set: u64, workers: &Workers, gate: &Gate) -> Result<PrimitiveSet, Stopped> {
         self.experiment.train(self.seed, set, workers, gate)
     }
@@ -255,6 +267,10 @@ impl<W: Scenic + 'static> AnyExperiment for WorldExperiment<W> {
 
     fn profiles(&self, individual: InspectedIndividual<'_>, node: usize) -> Vec<Profile> {
         let tree = individual.individual.hierarchy.tree();
+        let subtask = tree.nodes().get(node).map(|node| node.subtask);
+        if subtask.is_some_and(|subtask| self.nothing_learned(subtask).is_some()) {
+            return Vec::new();
+        }
         let policy = &mut self.policy(individual);
         profiles(&self.experiment.world, tree, node, policy)
     }

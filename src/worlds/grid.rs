@@ -124,6 +124,7 @@ impl Cells {
             marks: Vec::new(),
             view: None,
             sees: None,
+            remembers: None,
             rays: Vec::new(),
             readings: self.readings(cell),
             state_type,

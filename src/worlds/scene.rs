@@ -18,6 +18,8 @@ pub struct Scenery {
     pub grid: Option<[usize; 2]>,
     /// Walls, each from one end to the other.
     pub walls: Vec<[[f64; 2]; 2]>,
+    /// Walls that stop the agent but not its sight; only worlds without cells have any.
+    pub transparent_walls: Vec<[[f64; 2]; 2]>,
     /// Places with a name or a meaning, which never move.
     pub places: Vec<Mark>,
     /// Primitive subtasks that move the agent by one cell.
@@ -94,6 +96,8 @@ pub struct Snapshot {
     pub view: Option<View>,
     /// The position of the target that it sees.
     pub sees: Option<[f64; 2]>,
+    /// The place where it remembers the target of its task, while it does not see it.
+    pub remembers: Option<[f64; 2]>,
     /// Proximity rays, each from the body to the measured distance.
     pub rays: Vec<[[f64; 2]; 2]>,
     /// The readings of the sensors.

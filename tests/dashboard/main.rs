@@ -16,6 +16,7 @@ mod apart;
 mod behaviour;
 mod frames;
 mod mouse;
+mod options;
 mod product;
 mod recorded;
 mod room;

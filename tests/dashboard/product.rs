@@ -15,6 +15,7 @@ use maxq_lab::hierarchy::Glyphs::Unicode;
 use maxq_lab::lab::Event;
 use ratatui::buffer::Buffer;
 
+use super::options::remembering;
 use super::recorded::{Recorded, Screen, cells, foraging};
 
 /// The states of a run on the screen.
@@ -334,6 +335,11 @@ fn press(screen: &mut Screen, keys: &KeyMap, action: Action, of: Of) {
 #[test]
 fn every_frame_of_foraging() {
     every_frame(foraging());
+}
+
+#[test]
+fn every_frame_with_memory_and_commands() {
+    every_frame(remembering());
 }
 
 #[test]

@@ -14,6 +14,8 @@ pub enum Layer {
     Trail,
     /// Proximity rays.
     Ray,
+    /// Walls that the agent sees through, drawn dotted.
+    TransparentWall,
     /// Walls.
     Wall,
     /// A curve of a chart, by number.
@@ -124,7 +126,9 @@ impl<'l> Canvas<'l> {
         if !points.is_finite() {
             return;
         }
-        for point in 0..=points as usize {
+        // A whole cell cannot be dotted; its sign tells.
+        let dotted = layer == Layer::TransparentWall && self.look.signs.dots;
+        for point in (0..=points as usize).step_by(if dotted { 2 } else { 1 }) {
             let share = point as f64 / points.max(1.0);
             let (x, y) = (from[0] + share * dx, from[1] + share * dy);
             self.dot(x.round(), y.round(), layer, paint);
@@ -156,6 +160,7 @@ impl<'l> Canvas<'l> {
         match layer {
             Layer::Trail => signs.trail,
             Layer::Ray => signs.ray,
+            Layer::TransparentWall => signs.transparent_wall,
             Layer::Wall => signs.wall,
             Layer::Curve(which) => signs.series[usize::from(which + 2) % signs.series.len()],
         }

@@ -54,6 +54,8 @@ paints! {
     Worst = "worst";
     /// Walls.
     Wall = "wall";
+    /// Walls that the agent sees through.
+    TransparentWall = "transparent-wall";
     /// The agent.
     Agent = "agent";
     /// The nest, a destination.
@@ -66,6 +68,8 @@ paints! {
     Landmark = "landmark";
     /// The path of the agent.
     Trail = "trail";
+    /// The place where the agent remembers its target.
+    Remembered = "remembered";
     /// The field of view of the agent.
     Sight = "sight";
     /// Proximity rays.

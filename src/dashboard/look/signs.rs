@@ -25,6 +25,10 @@ pub struct Signs {
     pub hazard: &'static str,
     /// A wall where cells have no dots.
     pub wall: &'static str,
+    /// A transparent wall where cells have no dots.
+    pub transparent_wall: &'static str,
+    /// The place where the agent remembers its target.
+    pub remembered: &'static str,
     /// The trail where cells have no dots.
     pub trail: &'static str,
     /// Walls at a corner between cells, by the sum of 1 for a wall upwards, 2 downwards, 4 to
@@ -91,6 +95,8 @@ pub static UNICODE: Signs = Signs {
     object: "▮",
     hazard: "▒",
     wall: "█",
+    transparent_wall: "▒",
+    remembered: "◇",
     trail: "·",
     lines: [
         " ", "╹", "╻", "┃", "╸", "┛", "┓", "┫", "╺", "┗", "┏", "┣", "━", "┻", "┳", "╋",
@@ -143,6 +149,8 @@ pub static ASCII: Signs = Signs {
     object: "B",
     hazard: "%",
     wall: "#",
+    transparent_wall: "=",
+    remembered: "?",
     trail: ".",
     lines: [
         " ", "|", "|", "|", "-", "+", "+", "+", "-", "+", "+", "+", "-", "+", "+", "+",

@@ -11,7 +11,7 @@ use ratatui::layout::Rect;
 
 pub(super) use cells::share;
 pub(super) use marks::Scene;
-pub(super) use plane::{draw_mark, in_proportion};
+pub(super) use plane::{draw_mark, draw_walls, in_proportion};
 
 use self::cells::draw_cells;
 use self::lattice::Lattice;

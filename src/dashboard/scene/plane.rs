@@ -61,6 +61,16 @@ pub(in crate::dashboard) fn draw_mark(
     put_at(canvas, mark.at, sign(look, mark), area, buffer);
 }
 
+/// Draws solid and transparent walls.
+pub(in crate::dashboard) fn draw_walls(canvas: &mut Canvas<'_>, scenery: &Scenery) {
+    for [from, to] in &scenery.transparent_walls {
+        canvas.line(*from, *to, Layer::TransparentWall, Paint::TransparentWall);
+    }
+    for [from, to] in &scenery.walls {
+        canvas.line(*from, *to, Layer::Wall, Paint::Wall);
+    }
+}
+
 /// Draws a sign at a place, over what is there.
 fn put_at(
     canvas: &Canvas<'_>,
@@ -99,14 +109,16 @@ pub(super) fn draw_plane(
             canvas.line(*from, *to, Layer::Ray, Paint::Ray);
         }
     }
-    for [from, to] in &scenery.walls {
-        canvas.line(*from, *to, Layer::Wall, Paint::Wall);
-    }
+    draw_walls(&mut canvas, scenery);
     canvas.finish(buffer);
     for mark in scene.marks(scenery) {
         draw_mark(look, &canvas, mark, area, buffer);
     }
     if let Some(snapshot) = scene.snapshot {
+        if let Some(place) = snapshot.remembers {
+            let sign = (look.signs.remembered, look.style(Paint::Remembered));
+            put_at(&canvas, place, sign, area, buffer);
+        }
         put_at(&canvas, snapshot.at, agent(look, snapshot), area, buffer);
     }
 }

@@ -85,7 +85,9 @@ impl View for Arena {
     fn help_text(&self) -> &'static str {
         "A rollout: a copy of the selected individual acts and learns in the arena, trial after\n\
          trial, as it did in its generation. The rollout does not affect evolution. The shaded\n\
-         area is the robot's field of view; thin lines are its proximity rays. A battery that is\n\
+         area is the robot's field of view; thin lines are its proximity rays. Dotted walls (= in\n\
+         ASCII) are transparent: the robot sees through them. The diamond (? in ASCII) is the place\n\
+         where the robot remembers its target while it does not see it. A battery that is\n\
          carried is not drawn. The state type decides which subtasks can be active (Thesis\n\
          Table 4.1). At 1x the robot moves in real time. The last line shows the time steps of\n\
          this trial and of earlier ones, the latest first; ! marks a trial that was truncated.\n\

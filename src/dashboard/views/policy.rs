@@ -35,6 +35,8 @@ pub(super) struct Policy;
 const WITH_CURVES: u16 = 4;
 /// From this many columns on, two state types stand side by side.
 const TWO_COLUMNS: u16 = 90;
+/// Most curves of a chart, of the primitive subtasks with the highest peaks.
+const CURVES: usize = 6;
 /// Smaller probabilities are left out.
 pub(super) const SMALL: f64 = 0.005;
 
@@ -84,7 +86,8 @@ impl View for Policy {
          subtask, as the mean over sampled states of a type and over the better half of the\n\
          population (Thesis 4.5.4): as bars for the generation shown, as curves over all\n\
          generations (Figure 4.10). If a type has only one primitive, the structure has settled\n\
-         the behaviour; if it has more, learning decides."
+         the behaviour; if it has more, learning decides. Of many primitives, the bar joins those\n\
+         with the least shares, and the six with the highest peaks have curves."
     }
 }
 
@@ -181,28 +184,64 @@ fn paint(context: &ViewContext, name: &str) -> Paint {
     Paint::series(place.unwrap_or(0))
 }
 
+/// A part of a bar.
+struct Part {
+    name: String,
+    share: f64,
+    paint: Paint,
+}
+
+/// Returns the parts of a bar of some columns, the largest first. Several parts that are too
+/// short for a name are one.
+fn parts(context: &ViewContext, of: &BTreeMap<String, f64>, columns: f64) -> Vec<Part> {
+    let shares = of.iter().filter(|(_, share)| **share >= SMALL);
+    let mut parts: Vec<_> = shares
+        .map(|(name, &share)| Part {
+            name: one_line(name),
+            share,
+            paint: paint(context, name),
+        })
+        .collect();
+    parts.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let named = parts.partition_point(|part| part.share * columns >= NAMED);
+    if parts.len() > named + 1 && parts.len() > FEW {
+        let rest = parts.split_off(named);
+        let share: f64 = rest.iter().map(|part| part.share).sum();
+        let count = rest.len();
+        let name = if share * columns >= 2.0 * NAMED {
+            format!("{count} more")
+        } else {
+            format!("+{count}")
+        };
+        let paint = Paint::Dim;
+        parts.push(Part { name, share, paint });
+    }
+    parts
+}
+
 /// Draws a bar with a part for each primitive subtask, as long as it is probable.
 fn draw_bar(context: &ViewContext, of: &BTreeMap<String, f64>, line: Rect, buffer: &mut Buffer) {
     let look = &context.look;
-    let mut parts: Vec<_> = of.iter().filter(|(_, share)| **share >= SMALL).collect();
-    parts.sort_by(|a, b| b.1.total_cmp(a.1));
     let columns = f64::from(line.width.saturating_sub(2));
     let (mut sum, mut from) = (0.0, 1);
-    for (index, (name, share)) in parts.iter().enumerate() {
-        sum += **share;
+    for (index, part) in parts(context, of, columns).iter().enumerate() {
+        sum += part.share;
         let to = 1 + (sum.min(1.0) * columns).round() as u16;
-        let style = look
-            .style(paint(context, name))
-            .add_modifier(Modifier::REVERSED);
+        let style = look.style(part.paint).add_modifier(Modifier::REVERSED);
         let room = usize::from(to.saturating_sub(from));
         let separator = if index > 0 { "|" } else { "" };
         let room_for_label = room.saturating_sub(separator.len());
-        let text = label(context, &one_line(name), **share, room_for_label);
+        let text = label(context, &part.name, part.share, room_for_label);
         let text = format!("{separator}{text}");
         let text = fitted(&format!("{text:<room$}"), room, look.signs);
         from = put(buffer, line, (from, 0), &text, style);
     }
 }
+
+/// Fewest columns of a part with a name.
+const NAMED: f64 = 5.0;
+/// So many parts are drawn however short they are.
+const FEW: usize = 5;
 
 /// Fewest columns of a shortened name.
 const SHORT: usize = 8;
@@ -239,9 +278,14 @@ fn chart(context: &ViewContext, index: usize) -> Chart {
             }
         });
     // A primitive that is never selected has no curve.
-    let curves = curves.filter(|curve| {
-        let mut points = curve.points.iter().flatten();
-        points.any(|point| point[1] >= SMALL)
-    });
-    over_generations(context, curves.collect(), [0.0, 1.0])
+    let peak = |curve: &Curve| {
+        let points = curve.points.iter().flatten();
+        points.fold(0.0, |peak: f64, point| peak.max(point[1]))
+    };
+    let mut curves: Vec<_> = curves.filter(|curve| peak(curve) >= SMALL).collect();
+    if curves.len() > CURVES {
+        curves.sort_by(|a, b| peak(b).total_cmp(&peak(a)));
+        curves.truncate(CURVES);
+    }
+    over_generations(context, curves, [0.0, 1.0])
 }

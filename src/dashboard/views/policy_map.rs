@@ -14,9 +14,9 @@ use crate::dashboard::context::Subject;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, number, percent};
-use crate::dashboard::look::{Canvas, Layer, Paint};
+use crate::dashboard::look::{Canvas, Paint, width, wrapped};
 use crate::dashboard::scene::share;
-use crate::dashboard::scene::{Scene, draw_mark, draw_scene, in_proportion};
+use crate::dashboard::scene::{Scene, draw_mark, draw_scene, draw_walls, in_proportion};
 use crate::lab::inspection::{MapView, PolicyCell, PolicyMap};
 use crate::worlds::StateType;
 
@@ -24,6 +24,10 @@ use crate::worlds::StateType;
 const HEADINGS: usize = 24;
 /// Most columns of the legend.
 const LEGEND: u16 = 34;
+/// Fewest columns of the legend's titles, before their keys.
+const TITLE: usize = 20;
+/// Of more primitive subtasks, those that are selected nowhere share a line of the legend.
+const MANY: usize = 8;
 /// Less probable primitive subtasks are written in lower case.
 const CLEAR: f64 = 2.0 / 3.0;
 
@@ -116,20 +120,22 @@ impl PolicyMapView {
     }
 
     fn legend(&self, context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
+        let variants = context.experiment.variants();
+        let room = variants.iter().map(|variant| width(variant));
+        let room = room.fold(TITLE, usize::max);
         let mut lines = Vec::new();
         if context.scenery().grid.is_none() {
             let signs = context.look.signs;
             let degrees = self.heading().to_degrees().round();
             let arrow = signs.headings[(self.heading / (HEADINGS / 8)) % 8];
             let text = format!("heading {degrees:.0}{} {arrow}", signs.degrees);
-            lines.push(with_keys(context, &text, Action::Left));
+            lines.push(with_keys(context, &text, room, Action::Left));
         }
-        let variants = context.experiment.variants();
         if let Some(variant) = variants.get(self.variant) {
-            lines.push(with_keys(context, variant, Action::Up));
+            lines.push(with_keys(context, variant, room, Action::Up));
         }
         let mode = if self.by_value { "value" } else { "policy" };
-        lines.push(with_keys(context, mode, Action::Mode));
+        lines.push(with_keys(context, mode, room, Action::Mode));
         lines.push(Line::default());
         if self.by_value {
             lines.extend(value_legend(context, map))
@@ -143,9 +149,9 @@ impl PolicyMapView {
 }
 
 /// Returns a line of the legend with the keys that change what it says.
-fn with_keys(context: &ViewContext, text: &str, action: Action) -> Line<'static> {
+fn with_keys(context: &ViewContext, text: &str, room: usize, action: Action) -> Line<'static> {
     Pen::new(&context.look)
-        .cell(text, 20, Paint::Title)
+        .cell(text, room, Paint::Title)
         .text(format!(" {}", keys(context, action)), Paint::Key)
         .line()
 }
@@ -160,22 +166,29 @@ fn share_of_cells(map: &PolicyMap, holds: impl Fn(&PolicyCell) -> bool) -> f64 {
 fn policy_legend(context: &ViewContext, map: &PolicyMap) -> Vec<Line<'static>> {
     let catalogue = context.catalogue();
     let signs = catalogue.letters().into_iter().zip(catalogue.primitives());
-    let mut lines: Vec<_> = signs
-        .enumerate()
-        .map(|(place, (letter, primitive))| {
-            let share = share_of_cells(map, |cell| cell.primitive == primitive);
-            let paint = if share > 0.0 {
-                Paint::series(place)
-            } else {
-                Paint::Dim
-            };
-            Pen::new(&context.look)
-                .text(format!("{letter} "), paint)
-                .cell(primitive.name(catalogue), 17, paint)
-                .right(&percent(share), 6, Paint::Text)
-                .line()
-        })
-        .collect();
+    let (mut lines, mut nowhere) = (Vec::new(), Vec::new());
+    for (place, (letter, primitive)) in signs.enumerate() {
+        let share = share_of_cells(map, |cell| cell.primitive == primitive);
+        if share == 0.0 && catalogue.primitives().count() > MANY {
+            nowhere.push(letter.to_string());
+            continue;
+        }
+        let paint = if share > 0.0 {
+            Paint::series(place)
+        } else {
+            Paint::Dim
+        };
+        let pen = Pen::new(&context.look)
+            .text(format!("{letter} "), paint)
+            .cell(primitive.name(catalogue), 17, paint)
+            .right(&percent(share), 6, Paint::Text);
+        lines.push(pen.line());
+    }
+    if !nowhere.is_empty() {
+        let text = format!("nowhere: {}", nowhere.join(" "));
+        let texts = wrapped(&text, usize::from(LEGEND) - 2, "  ").into_iter();
+        lines.extend(texts.map(|text| line(&context.look, text, Paint::Dim)));
+    }
     let note = match context.scenery().grid {
         Some(_) => "cells: the greedy action",
         None => "lower case: below 2/3",
@@ -264,9 +277,7 @@ impl View for PolicyMapView {
             return draw_lines(look, &self.legend(context, map), 0, legend, buffer);
         }
         let mut canvas = Canvas::new(look, place, [0.0, 0.0], scenery.extent);
-        for [from, to] in &scenery.walls {
-            canvas.line(*from, *to, Layer::Wall, Paint::Wall);
-        }
+        draw_walls(&mut canvas, scenery);
         canvas.finish(buffer);
         self.shade(context, map, &canvas, place, buffer);
         for mark in scenery.places.iter().chain(&map.marks) {
@@ -349,7 +360,9 @@ impl View for PolicyMapView {
          policy is followed from the root down, and the letter names the primitive subtask that\n\
          it most probably ends in. Percentages are shares of the arena. In value mode a digit\n\
          shows V(root), from 0 (lowest) to 9 (highest). Positions where the robot does not fit\n\
-         stay blank."
+         stay blank. A robot with memory is shown with nothing remembered, or with memory, where\n\
+         it remembers the closest battery or the nest: composite subtasks learn the two cases\n\
+         apart. Recall then acts as ApproachBattery or ApproachNest, otherwise as Wander."
     }
 }
 

@@ -11,6 +11,7 @@ use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::Pen;
 use crate::dashboard::look::{Chart, Curve, Look, Paint, axis_end, fitted, put};
 use crate::evolution::Origin;
+use crate::hierarchy::TreeLine;
 use crate::scenario::Selection;
 use crate::worlds::scene::Snapshot;
 
@@ -138,16 +139,26 @@ pub(super) fn keys(context: &ViewContext, action: Action) -> String {
     hint.map_or(String::new(), |(keys, _)| keys)
 }
 
-/// Selects the node at a position of a tree that is drawn into `place`, without its first
-/// `skipped` lines.
+/// Columns before a tree: the pointer, and a sign for active subtasks.
+pub(super) const BEFORE_TREE: u16 = 2;
+
+/// Returns the line of a drawn tree that holds a node.
+pub(super) fn line_of(lines: &[TreeLine], node: usize) -> usize {
+    lines.iter().position(|line| line.has(node)).unwrap_or(0)
+}
+
+/// Selects the node at a position of a tree whose lines are drawn into `place`, without the
+/// first `skipped` ones.
 pub(super) fn click_node(
     context: &mut ViewContext,
-    nodes: usize,
+    lines: &[TreeLine],
     (place, skipped): (Rect, usize),
     at: Position,
 ) -> Clicked {
-    let node = line_at(at, place, 0).map(|line| line + skipped);
-    let node = node.filter(|node| *node < nodes);
+    let line = line_at(at, place, 0).and_then(|line| lines.get(line + skipped));
+    let column = at.x.saturating_sub(place.x + BEFORE_TREE);
+    let node = line.and_then(|line| line.at(column.into()));
+    let nodes = lines.iter().map(|line| line.nodes.len()).sum::<usize>();
     let selected = context.node.min(nodes.saturating_sub(1));
     Clicked::on(node, selected, |node| context.node = node)
 }

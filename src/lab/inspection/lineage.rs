@@ -47,6 +47,24 @@ pub struct Lineage {
 }
 
 impl Lineage {
+    /// Returns the mean length of the scored trials of the line of descent in each generation:
+    /// what was inherited along it. `records` are those that the lineage was made of.
+    pub fn course<'r>(
+        &self,
+        records: impl IntoIterator<Item = &'r GenerationRecord>,
+    ) -> Vec<(u64, f64)> {
+        let line: Vec<_> = self.line().collect();
+        let of = |record: &GenerationRecord| {
+            // The line begins with the latest.
+            let born = |ancestor: &&&Ancestor| ancestor.born <= record.generation;
+            let id = line.iter().find(born)?.id;
+            let mut individuals = record.individuals.iter();
+            let individual = individuals.find(|individual| individual.id == id)?;
+            Some((record.generation, individual.mean_steps()))
+        };
+        records.into_iter().filter_map(of).collect()
+    }
+
     /// Returns the line of descent of the root: the individual, the parent that gave its root, and so on
     /// back to the start.
     pub fn line(&self) -> impl Iterator<Item = &Ancestor> {

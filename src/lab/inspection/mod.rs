@@ -11,6 +11,8 @@ mod policy_map;
 mod profile;
 mod rollout;
 mod start;
+mod trial_lengths;
+mod untaught;
 
 pub use archive::{Archive, ArchiveError};
 pub use lineage::{Ancestor, Lineage, lineage};
@@ -18,10 +20,12 @@ pub use policy_map::{MapView, PolicyCell, PolicyMap};
 pub use profile::{Curve, Profile, Quantity};
 pub use rollout::{Rollout, RolloutStatus, StepTrace};
 pub use start::{Start, StartError};
+pub use trial_lengths::TrialLengths;
 
 pub(super) use policy_map::policy_map;
 pub(super) use profile::profiles;
 pub(super) use rollout::WorldRollout;
+pub(super) use untaught::nothing_learned;
 
 use crate::evolution::{EvolutionState, Individual};
 use crate::learning::PrimitiveSet;

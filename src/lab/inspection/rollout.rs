@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use super::policy_map::{MapView, PolicyMap, policy_map};
+use super::trial_lengths::TrialLengths;
 use super::{InspectedIndividual, Start};
 use crate::evolution::{Experiment, TrialRecord};
 use crate::learning::{Agent, Explanation, Observer, Trial};
@@ -55,6 +56,8 @@ pub struct RolloutStatus {
     pub ended: Option<TrialRecord>,
     /// Results of the latest trials, including the present one if it has ended; the oldest first.
     pub history: VecDeque<TrialRecord>,
+    /// Mean lengths of all trials that have ended.
+    pub lengths: TrialLengths,
     /// The nodes from the root to the primitive subtask that acted last; the root alone before
     /// the first step.
     pub path: Vec<usize>,
@@ -140,6 +143,7 @@ impl<W: Scenic> WorldRollout<W> {
                 steps: 0,
                 ended: None,
                 history: VecDeque::new(),
+                lengths: TrialLengths::default(),
                 path: Vec::new(),
                 action: None,
                 reward: None,
@@ -193,6 +197,7 @@ impl<W: Scenic> WorldRollout<W> {
             delivered: self.trial.done,
         };
         self.status.ended = Some(record);
+        self.status.lengths.add(record.steps);
         if self.status.history.len() == HISTORY {
             self.status.history.pop_front();
         }

@@ -26,6 +26,7 @@ impl Scenic for CliffWorld {
             grid: Some([self.cells.columns, self.cells.rows]),
             walls: outer_walls(self.cells).into(),
             places,
+            transparent_walls: Vec::new(),
             moves: moves([RIGHT, UP, LEFT, DOWN]),
             time_step_s: None,
         }

@@ -1,6 +1,6 @@
 //! The robot's memory of places within a trial, kept by dead reckoning (Thesis chapter 5).
 
-use nalgebra::Vector2;
+use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 
 use super::motion::rotate;
@@ -50,6 +50,14 @@ impl Movement {
 }
 
 impl Memory {
+    /// Returns the place that a task needs.
+    fn of(&self, task: Task) -> Option<Vector2<f64>> {
+        match task {
+            Task::EmptyHanded => self.battery,
+            Task::Carrying(_) | Task::Delivered(_) => self.nest,
+        }
+    }
+
     /// Moves the remembered places as the robot moves.
     pub(super) fn shift(&mut self, movement: Movement) {
         let back = Vector2::new(movement.heading.x, -movement.heading.y);
@@ -75,16 +83,31 @@ impl ForagingWorld {
         };
         look(&mut memory.nest, nest);
         state.memory = memory;
-        let place = if searches {
-            memory.battery
-        } else {
-            memory.nest
-        };
+        let place = memory.of(state.task);
         let hidden = place.filter(|_| state.target.is_none());
         state.recalled = hidden.map(|place| {
             let distance = place.norm();
             self.sensors.recall(angle_deg(place), distance, rng)
         });
+    }
+
+    /// Returns where a robot remembers the target of its task, while it does not see it.
+    pub(super) fn remembered(&self, state: &ForagingState) -> Option<Point2<f64>> {
+        let place = state.memory.of(state.task);
+        let place = place.filter(|_| state.recalled.is_some())?;
+        let Pose { position, heading } = state.pose;
+        Some(position + rotate(place, heading))
+    }
+
+    /// Returns the memory of a robot that knows where the closest battery and the nest are.
+    pub(super) fn full_memory(&self, pose: &Pose) -> Memory {
+        let back = Vector2::new(pose.heading.x, -pose.heading.y);
+        let place = |target| rotate(self.arena.target(target) - pose.position, back);
+        let batteries = (0..self.arena.batteries.len()).map(place);
+        Memory {
+            battery: batteries.min_by(|a, b| a.norm().total_cmp(&b.norm())),
+            nest: Some(place(self.arena.nest_index())),
+        }
     }
 
     /// Returns the movement between two poses, in the frame of the first.

@@ -14,16 +14,25 @@ use crate::worlds::{Kind, StateType, SubtaskId, World};
 
 /// Variants of [`Scenic::state_at`].
 const VARIANTS: [&str; 2] = ["empty-handed", "carrying"];
+/// Further variants of a robot with memory, in the same order: it remembers where the closest
+/// battery and the nest are.
+const REMINDED: [&str; 2] = ["empty-handed with memory", "carrying with memory"];
 
 impl Scenic for ForagingWorld {
     fn scenery(&self) -> Scenery {
         let arena = &self.arena;
-        let ends = |wall: &super::Wall| [wall.start, wall.end()].map(|end| [end.x, end.y]);
+        let walls = |transparent| {
+            let walls = arena.walls.iter();
+            let walls = walls.filter(move |wall| wall.transparent == transparent);
+            let ends = |wall: &super::Wall| [wall.start, wall.end()].map(|end| [end.x, end.y]);
+            walls.map(ends).collect()
+        };
         Scenery {
             extent: arena.size.into(),
             unit: String::from("mm"),
             grid: None,
-            walls: arena.walls.iter().map(ends).collect(),
+            walls: walls(false),
+            transparent_walls: walls(true),
             places: vec![Mark {
                 role: Role::Goal,
                 label: String::from("nest"),
@@ -64,13 +73,11 @@ impl Scenic for ForagingWorld {
                 range: self.sensors.vision_range,
             }),
             sees: seen.map(|(target, _)| self.arena.target(target).into()),
+            remembers: self.remembered(state).map(Into::into),
             rays: self.measured_rays(state),
             readings: self.readings(state),
             state_type: self.state_type(state),
-            variant: match task {
-                Task::EmptyHanded => 0,
-                Task::Carrying(_) | Task::Delivered(_) => 1,
-            },
+            variant: self.variant(state),
         }
     }
 
@@ -79,7 +86,9 @@ impl Scenic for ForagingWorld {
     }
 
     fn variants(&self) -> Vec<String> {
-        VARIANTS.map(String::from).into()
+        let reminded = REMINDED.iter().filter(|_| self.memory.is_some());
+        let all = VARIANTS.iter().chain(reminded);
+        all.copied().map(String::from).collect()
     }
 
     fn state_at(
@@ -95,7 +104,7 @@ impl Scenic for ForagingWorld {
         if !inside || !self.arena.is_free(position, self.radius) {
             return None;
         }
-        let task = if variant == 0 {
+        let task = if variant.is_multiple_of(VARIANTS.len()) {
             Task::EmptyHanded
         } else {
             Task::Carrying(0)
@@ -105,7 +114,12 @@ impl Scenic for ForagingWorld {
             position,
             heading: Vector2::new(cos, sin),
         };
-        Some(self.sensed(pose, task, rng))
+        let mut state = self.sensed(pose, task, rng);
+        if variant >= VARIANTS.len() {
+            let memory = self.full_memory(&pose);
+            self.remember(&mut state, memory, rng);
+        }
+        Some(state)
     }
 
     fn sweeps(&self, subtask: SubtaskId, state_type: StateType) -> Vec<Sweep<[f32; INPUTS]>> {
@@ -128,6 +142,16 @@ impl ForagingWorld {
         let map = self.catalogue.subtask(subtask).map;
         let axes = self.catalogue.maps[map.index()].axes();
         axes.iter().any(|axis| axis.input == super::ANGLE)
+    }
+
+    /// Returns the index of the variant that a state belongs to.
+    fn variant(&self, state: &ForagingState) -> usize {
+        let (carries, remembers) = match state.task {
+            Task::EmptyHanded => (0, state.recalled.is_some()),
+            Task::Carrying(_) => (1, state.recalled.is_some()),
+            Task::Delivered(_) => (1, self.memory.is_some()),
+        };
+        carries + usize::from(remembers) * VARIANTS.len()
     }
 
     /// Returns each proximity ray, from the body's surface to the measured distance.
@@ -165,6 +189,17 @@ impl ForagingWorld {
             String::from("target_distance_mm"),
             target.map(|t| t.distance_mm),
         ));
+        if self.memory.is_some() {
+            let recalled = state.recalled;
+            readings.push(reading(
+                String::from("recalled_angle_deg"),
+                recalled.map(|r| r.angle_deg),
+            ));
+            readings.push(reading(
+                String::from("recalled_distance_mm"),
+                recalled.map(|r| r.distance_mm),
+            ));
+        }
         readings
     }
 }
@@ -222,6 +257,48 @@ mod tests {
             carried += usize::from(carries);
         }
         assert!(seen > 20 && carried > 100);
+    }
+
+    #[test]
+    fn a_robot_with_memory_shows_where_it_remembers_its_target() {
+        let mut settings = environment(1);
+        settings.memory = Some(Default::default());
+        settings.arena.transparent_walls_mm = vec![[100.0, 2500.0, 500.0, 2500.0]];
+        let world = ForagingWorld::new(&settings).unwrap();
+        assert_eq!(world.variants()[3], "carrying with memory");
+        let scenery = world.scenery();
+        assert_eq!(scenery.walls.len(), world.arena.walls.len() - 1);
+        assert_eq!(
+            scenery.transparent_walls,
+            [[[100.0, 2500.0], [500.0, 2500.0]]]
+        );
+        let mut rng = stream(1, 0, 0, Purpose::Trials);
+        let nest: [f64; 2] = world.arena.nest.into();
+        let mut hidden = 0;
+        for heading in 0..8 {
+            let at = [world.arena.size.x / 2.0, world.arena.size.y / 2.0];
+            let heading = f64::from(heading);
+            let mut state = world.state_at(at, heading, 3, &mut rng).unwrap();
+            // Without odometry noise the place stays where it is while the robot moves.
+            for _ in 0..3 {
+                let shown = world.snapshot(&state);
+                assert_eq!(shown.remembers.is_some(), shown.sees.is_none());
+                assert_eq!(shown.variant, if shown.remembers.is_some() { 3 } else { 1 });
+                assert_eq!(shown.readings[7].name, "recalled_angle_deg");
+                assert_eq!(shown.readings[7].value.is_some(), shown.remembers.is_some());
+                if let Some([x, y]) = shown.remembers {
+                    assert!((x - nest[0]).hypot(y - nest[1]) < 1e-6, "{x} {y}");
+                    hidden += 1;
+                }
+                world.step(&mut state, AVOID, 1, &mut rng);
+                if state.target.is_some() {
+                    break;
+                }
+            }
+        }
+        assert!(hidden > 8);
+        let state = world.state_at([1500.0, 1500.0], 0.0, 1, &mut rng).unwrap();
+        assert_eq!(world.snapshot(&state).remembers, None);
     }
 
     #[test]

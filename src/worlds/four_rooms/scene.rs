@@ -24,6 +24,7 @@ impl Scenic for FourRoomsWorld {
                 label: String::from("G"),
                 at: SHAPE.centre(self.goal),
             }],
+            transparent_walls: Vec::new(),
             moves: moves([RIGHT, UP, LEFT, DOWN]),
             time_step_s: None,
         }

@@ -34,6 +34,7 @@ impl Scenic for TaxiWorld {
                     at: cells.centre(cell),
                 })
                 .collect(),
+            transparent_walls: Vec::new(),
             moves: moves([EAST, NORTH, WEST, SOUTH]),
             time_step_s: None,
         }
@@ -66,6 +67,7 @@ impl Scenic for TaxiWorld {
             marks,
             view: None,
             sees: None,
+            remembers: None,
             rays: Vec::new(),
             readings: cells.readings(usize::from(state.taxi)),
             state_type: self.state_type(state),

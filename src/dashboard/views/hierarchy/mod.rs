@@ -15,7 +15,7 @@ use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{last_start, mark_more};
 use crate::dashboard::look::{Paint, fitted, one_line, put};
 use crate::dashboard::view_id::ViewId;
-use crate::hierarchy::{Tree, to_dot};
+use crate::hierarchy::to_dot;
 use table::Table;
 
 /// The task hierarchy of an individual, with the active path of the rollout highlighted. Below it
@@ -77,16 +77,17 @@ impl View for Hierarchy {
             put(buffer, area, (1, 0), &text, look.style(Paint::Bad));
             return;
         };
-        let nodes = tree.nodes().len();
-        let table = Table::of(context, individual, &tree, area.width);
+        let table = Table::of(context, individual, &tree, area);
         table.draw_head(context, area, buffer);
-        let (place, skipped) = place_of_tree(context, &tree, area);
-        for (row, node) in (skipped..nodes).take(place.height.into()).enumerate() {
-            table.draw_node(context, &tree, node, row as u16, place, buffer);
+        let (place, skipped) = place_of_tree(&table, area);
+        let shown = table.lines.iter().skip(skipped).take(place.height.into());
+        for (row, line) in (0..).zip(shown) {
+            table.draw_line(context, &tree, line, shared::row(place, row), buffer);
         }
-        let below = nodes.saturating_sub(skipped + usize::from(place.height));
+        let lines = table.lines.len();
+        let below = lines.saturating_sub(skipped + usize::from(place.height));
         mark_more(look, [skipped, below], place, buffer);
-        let rest = shared::below(area, (nodes as u16).saturating_add(2));
+        let rest = shared::below(area, (lines as u16).saturating_add(2));
         details::draw(context, &tree, individual, rest, buffer);
     }
 
@@ -130,17 +131,21 @@ impl View for Hierarchy {
     }
 
     fn click(&mut self, context: &mut ViewContext, area: Rect, at: Position) -> Clicked {
-        let Some(tree) = context.inspected_tree() else {
+        let Some(table) = context.inspected().and_then(|(_, individual)| {
+            let tree = context.tree(individual)?;
+            Some(Table::of(context, individual, &tree, area))
+        }) else {
             return Clicked::Nothing;
         };
-        let place = place_of_tree(context, &tree, area);
-        click_node(context, tree.nodes().len(), place, at)
+        let place = place_of_tree(&table, area);
+        click_node(context, &table.lines, place, at)
     }
 
     fn csv(&self, context: &ViewContext) -> Option<String> {
         let (_, individual) = context.inspected()?;
         let tree = context.tree(individual)?;
-        let table = Table::of(context, individual, &tree, u16::MAX);
+        let everything = Rect::new(0, 0, u16::MAX, u16::MAX);
+        let table = Table::of(context, individual, &tree, everything);
         let mut csv = String::from("node,parent,subtask,state_types,temperature,invoked\n");
         for (index, node) in tree.nodes().iter().enumerate() {
             let parent = node.parent;
@@ -168,6 +173,7 @@ impl View for Hierarchy {
          state types in which a subtask can be active (Thesis Tables 4.2 and 4.3). T: the\n\
          temperature of a composite's softmax; it falls whenever the subtask terminates, so that\n\
          its choices become greedy. invoked: how often the rollout has invoked the subtask.\n\
+         Where there is little room, primitive siblings share a line, each with this number.\n\
          Below stand the time steps of the scored trials; ! marks a truncated one."
     }
 }
@@ -175,13 +181,12 @@ impl View for Hierarchy {
 /// Returns the area of the tree below the head, and the number of lines scrolled out above it.
 ///
 /// The selected line is always visible.
-fn place_of_tree(context: &ViewContext, tree: &Tree, area: Rect) -> (Rect, usize) {
+fn place_of_tree(table: &Table, area: Rect) -> (Rect, usize) {
     let place = shared::below(area, 1);
-    let skipped = context
-        .node_in(tree)
-        .saturating_sub(usize::from(place.height / 2));
+    let selected = shared::line_of(&table.lines, table.selected);
+    let skipped = selected.saturating_sub(usize::from(place.height / 2));
     (
         place,
-        skipped.min(last_start(tree.nodes().len(), place.height)),
+        skipped.min(last_start(table.lines.len(), place.height)),
     )
 }

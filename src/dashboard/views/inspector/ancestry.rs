@@ -32,7 +32,7 @@ pub(super) fn lines(
     let individuals = context.shown().map(|record| &record.individuals);
     let trials = individuals
         .and_then(|all| all.first())
-        .map_or(1, |one| one.trials.len());
+        .map_or(1, |one| one.scored());
     for ancestor in lineage.line() {
         let steps = ancestor.fitness_steps as f64 / trials.max(1) as f64;
         let (born, rank) = (ancestor.born, ancestor.rank);

@@ -2,6 +2,7 @@
 
 mod ancestry;
 mod chart;
+mod curve;
 mod selection;
 mod values;
 
@@ -9,7 +10,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Position, Rect};
 use ratatui::text::Line;
 
-use super::shared::{below, click_node, draw_no_individual, right_of, subject};
+use super::shared::{
+    BEFORE_TREE, below, click_node, draw_no_individual, line_of, right_of, subject,
+};
 use super::view::View;
 use crate::dashboard::context::Clicked;
 use crate::dashboard::context::Effect;
@@ -17,8 +20,8 @@ use crate::dashboard::context::Subject;
 use crate::dashboard::context::ViewContext;
 use crate::dashboard::keys::Action;
 use crate::dashboard::look::lines::{Pen, draw_lines, last_start, number};
-use crate::dashboard::look::{Paint, put, width};
-use crate::hierarchy::{draw, to_dot};
+use crate::dashboard::look::{Paint, put};
+use crate::hierarchy::{TreeLine, folded_lines, lines, to_dot};
 use crate::lab::inspection::{Lineage, Profile, lineage};
 use crate::learning::SelectionProbabilities;
 use values::ProfileChoice;
@@ -26,15 +29,19 @@ use values::ProfileChoice;
 /// From this size on, all pages are shown at once.
 const ROOMY: (u16, u16) = (110, 32);
 
+/// From this many columns on, lineage and curve stand side by side.
+const SIDE_BY_SIDE: u16 = 90;
+/// Columns of a folded tree.
+const FOLDED: usize = 34;
 /// Columns reserved for a page beside the tree.
 const PAGE: u16 = 34;
 
 /// The selected individual: its tree, and as pages beside it the learned values of the selected
-/// subtask, the selection probabilities, and the lineage.
+/// subtask, the selection probabilities, the lineage, and learning curves.
 ///
 /// ```text
 ///  ╭ Inspector  individual 362, generation 26 ──────────────────────────╮
-///  │ ▸ Root      τ 0.41 12× │ ▸Values   Selection   Lineage              │
+///  │ ▸ Root      τ 0.41 12× │ ▸Values Selection Lineage Curve            │
 ///  │   ├─ FindBattery τ ... │ C~+V over surroundings, state type 1 (1/4) │
 ///  │   │  └─ Avoid          │                 FindBattery   Wander       │
 ///  │   └─ ApproachBattery   │ open               ▸ -3.21    -5.40        │
@@ -55,16 +62,18 @@ enum Page {
     Values,
     Selection,
     Lineage,
+    Curve,
 }
 
 impl Page {
-    const ALL: [Self; 3] = [Self::Values, Self::Selection, Self::Lineage];
+    const ALL: [Self; 4] = [Self::Values, Self::Selection, Self::Lineage, Self::Curve];
 
     fn title(self) -> &'static str {
         match self {
             Self::Values => "Values",
             Self::Selection => "Selection",
             Self::Lineage => "Lineage",
+            Self::Curve => "Curve",
         }
     }
 
@@ -81,39 +90,66 @@ struct Computed {
     profiles: Vec<Profile>,
     selection: SelectionProbabilities,
     lineage: Option<Lineage>,
+    /// Mean time steps per trial of the line of descent, generation by generation.
+    course: Vec<(u64, f64)>,
 }
 
 impl Inspector {
-    fn tree_lines(&self, context: &ViewContext) -> Vec<Line<'static>> {
+    /// Returns the lines of the tree, folded if there are more than `rows`, each with what is
+    /// written of it.
+    fn tree_lines(&self, context: &ViewContext, rows: u16) -> Vec<(TreeLine, Line<'static>)> {
         let look = &context.look;
         let Some(inspected) = context.player.individual() else {
             return Vec::new();
         };
         let hierarchy = &inspected.individual.hierarchy;
-        let drawn = draw(hierarchy.tree(), context.catalogue(), look.signs.tree);
-        let room = drawn.iter().map(|line| width(line)).max().unwrap_or(0) + 1;
+        let tree = hierarchy.tree();
         let rollout = context.player.rollout();
         let visits = rollout.map(|rollout| &rollout.status().visits);
-        let selected = context.node_in(hierarchy.tree());
-        let lines = drawn.into_iter().zip(hierarchy.values()).enumerate();
-        let lines = lines.map(|(node, (line, values))| {
-            let (sign, paint) = match (node == selected, values.is_some()) {
-                (true, _) => (look.signs.pointer, Paint::Selected),
-                (false, true) => (" ", Paint::Title),
-                (false, false) => (" ", Paint::Text),
-            };
-            let tau = values.as_ref().map(|values| number(values.temperature));
-            let tau = tau.map_or(String::new(), |tau| format!("{} {tau}", look.signs.tau));
+        let count = |node: usize| {
             let count = visits.and_then(|visits| visits.get(node));
-            let count = count.map(|count| format!("{count}{}", look.signs.times));
-            Pen::new(look)
-                .text(format!("{sign} "), paint)
-                .cell(&line, room, paint)
+            count.map_or(String::new(), |count| {
+                format!("{count}{}", look.signs.times)
+            })
+        };
+        let (catalogue, glyphs) = (context.catalogue(), look.signs.tree);
+        let lines = if tree.nodes().len() <= usize::from(rows) {
+            lines(tree, catalogue, glyphs)
+        } else {
+            folded_lines(tree, catalogue, glyphs, FOLDED, |node| {
+                tree.subtask(node).name(catalogue).to_owned()
+            })
+        };
+        let alone = lines.iter().filter(|line| line.nodes.len() == 1);
+        let room = alone.map(TreeLine::width).max().unwrap_or(0) + 1;
+        let selected = context.node_in(tree);
+        let written = lines.into_iter().map(|line| {
+            let sign = if line.has(selected) {
+                Pen::new(look).text(look.signs.pointer, Paint::Selected)
+            } else {
+                Pen::new(look).text(" ", Paint::Text)
+            };
+            let [only] = line.nodes.as_slice() else {
+                let pen = several(sign.text(" ", Paint::Text), &line, selected);
+                return (line, pen.line());
+            };
+            let values = hierarchy.values().get(only.node).and_then(Option::as_ref);
+            let paint = match (only.node == selected, values.is_some()) {
+                (true, _) => Paint::Selected,
+                (false, true) => Paint::Title,
+                (false, false) => Paint::Text,
+            };
+            let text = format!("{}{}", line.branches, only.text);
+            let tau = values.map(|values| number(values.temperature));
+            let tau = tau.map_or(String::new(), |tau| format!("{} {tau}", look.signs.tau));
+            let pen = sign
+                .text(" ", paint)
+                .cell(&text, room, paint)
                 .cell(&tau, 7, Paint::Dim)
-                .right(&count.unwrap_or_default(), 6, Paint::Text)
-                .line()
+                .right(&count(only.node), 6, Paint::Text);
+            (line, pen.line())
         });
-        lines.collect()
+        written.collect()
     }
 
     fn page_lines(&self, context: &ViewContext, page: Page, columns: usize) -> Vec<Line<'static>> {
@@ -121,7 +157,7 @@ impl Inspector {
             return Vec::new();
         };
         match page {
-            Page::Values => Vec::new(),
+            Page::Values | Page::Curve => Vec::new(),
             Page::Selection => selection::lines(context, &computed.selection, columns),
             Page::Lineage => match &computed.lineage {
                 Some(lineage) => ancestry::lines(context, lineage, columns),
@@ -140,7 +176,8 @@ impl Inspector {
             Page::Values => self
                 .choice
                 .draw(context, &computed.profiles, inside, buffer),
-            _ => {
+            Page::Curve => curve::draw(context, &computed.course, inside, buffer),
+            Page::Selection | Page::Lineage => {
                 let lines = self.page_lines(context, page, inside.width.into());
                 let scroll = if page == self.page { self.scroll } else { 0 };
                 draw_lines(&context.look, &lines, scroll, inside, buffer);
@@ -148,49 +185,83 @@ impl Inspector {
         }
     }
 
-    /// Returns the area of the tree, and the number of lines scrolled out above it.
-    fn place_of_tree(&self, context: &ViewContext, area: Rect) -> (Rect, usize) {
-        let lines = self.tree_lines(context);
+    /// Returns the lines of the tree, their area, and the number of lines scrolled out above it.
+    fn place_of_tree(&self, context: &ViewContext, area: Rect) -> PlacedTree {
         let count = |lines: usize| u16::try_from(lines).unwrap_or(u16::MAX);
-        if Self::is_roomy(area) {
+        let is_roomy = Self::is_roomy(area);
+        let rows = if is_roomy {
+            (area.height / 2).saturating_sub(1)
+        } else {
+            area.height
+        };
+        let lines = self.tree_lines(context, rows);
+        let place = if is_roomy {
             let [left, _] = columns(area, 2 * area.width / 5);
-            let [above, _] = rows(left, (count(lines.len()) + 1).min(left.height / 2));
-            return (above, 0);
+            let [above, _] = self::rows(left, (count(lines.len()) + 1).min(left.height / 2));
+            above
+        } else {
+            let widest = lines.iter().map(|(_, line)| line.width()).max();
+            let most = area.width.saturating_sub(PAGE).max(area.width / 2);
+            let [left, _] = columns(area, count(widest.unwrap_or(0)).min(most));
+            left
+        };
+        let (lines, written): (Vec<_>, Vec<_>) = lines.into_iter().unzip();
+        let selected = context
+            .player
+            .tree()
+            .map_or(0, |tree| context.node_in(tree));
+        let skipped = line_of(&lines, selected).saturating_sub(usize::from(place.height / 2));
+        PlacedTree {
+            skipped: skipped.min(last_start(lines.len(), place.height)),
+            lines,
+            written,
+            place,
         }
-        let widest = lines.iter().map(Line::width).max().unwrap_or(0);
-        let most = area.width.saturating_sub(PAGE).max(area.width / 2);
-        let [left, _] = columns(area, count(widest).min(most));
-        let skipped = context.node.saturating_sub(usize::from(left.height / 2));
-        (left, skipped.min(last_start(lines.len(), left.height)))
     }
 
     /// Draws the tree and all pages.
     fn draw_roomy(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
         let [left, right] = columns(area, 2 * area.width / 5);
-        let (above, _) = self.place_of_tree(context, area);
-        let [_, selection] = rows(left, above.height);
-        let [values, lineage] = rows(right, right.height * 3 / 5);
-        draw_lines(&context.look, &self.tree_lines(context), 0, above, buffer);
-        for (page, area) in [
-            (Page::Values, values),
-            (Page::Selection, selection),
-            (Page::Lineage, lineage),
-        ] {
+        let tree = self.place_of_tree(context, area);
+        let [_, selection] = rows(left, tree.place.height);
+        let [values, others] = rows(right, right.height * 3 / 5);
+        tree.draw(context, buffer);
+        for (page, area) in [(Page::Values, values), (Page::Selection, selection)] {
             title(context, page, page == self.page, area, buffer);
             self.draw_page(context, page, area, buffer);
         }
+        self.draw_history(context, others, buffer);
+    }
+
+    /// Draws lineage and curve side by side, or where there is little room one of them.
+    fn draw_history(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+        let pages = [Page::Lineage, Page::Curve];
+        if area.width >= SIDE_BY_SIDE {
+            let sides = columns(area, area.width / 2);
+            for (page, area) in pages.into_iter().zip(sides) {
+                title(context, page, page == self.page, area, buffer);
+                self.draw_page(context, page, area, buffer);
+            }
+            return;
+        }
+        let mut column = 0;
+        for page in pages {
+            let place = right_of(area, column);
+            column += title(context, page, page == self.page, place, buffer);
+        }
+        let shown = usize::from(self.page == Page::Curve);
+        self.draw_page(context, pages[shown], area, buffer);
     }
 
     /// Draws the tree and one page.
     fn draw_narrow(&self, context: &ViewContext, area: Rect, buffer: &mut Buffer) {
-        let lines = self.tree_lines(context);
-        let (left, skipped) = self.place_of_tree(context, area);
-        let [_, right] = columns(area, left.width);
-        draw_lines(&context.look, &lines, skipped, left, buffer);
+        let tree = self.place_of_tree(context, area);
+        let [_, right] = columns(area, tree.place.width);
+        tree.draw(context, buffer);
         let mut column = 0;
         for page in Page::ALL {
             let area = right_of(right, column);
-            column += title(context, page, page == self.page, area, buffer) + 1;
+            column += title(context, page, page == self.page, area, buffer);
         }
         self.draw_page(context, self.page, right, buffer);
     }
@@ -198,6 +269,38 @@ impl Inspector {
     fn is_roomy(area: Rect) -> bool {
         area.width >= ROOMY.0 - 2 && area.height >= ROOMY.1 - 4
     }
+}
+
+/// The tree, and where it stands.
+struct PlacedTree {
+    lines: Vec<TreeLine>,
+    /// What is written of each line.
+    written: Vec<Line<'static>>,
+    place: Rect,
+    /// Lines scrolled out above.
+    skipped: usize,
+}
+
+impl PlacedTree {
+    fn draw(&self, context: &ViewContext, buffer: &mut Buffer) {
+        let (look, place) = (&context.look, self.place);
+        draw_lines(look, &self.written, self.skipped, place, buffer);
+    }
+}
+
+/// Writes several nodes of a line.
+fn several<'l>(mut pen: Pen<'l>, line: &TreeLine, selected: usize) -> Pen<'l> {
+    pen = pen.text(line.branches.clone(), Paint::Text);
+    for text in &line.nodes {
+        let paint = if text.node == selected {
+            Paint::Selected
+        } else {
+            Paint::Text
+        };
+        pen = pen.to(usize::from(BEFORE_TREE) + text.column);
+        pen = pen.text(text.text.clone(), paint);
+    }
+    pen
 }
 
 /// Writes the title of a page; returns the columns used.
@@ -301,8 +404,13 @@ impl View for Inspector {
     }
 
     fn click(&mut self, context: &mut ViewContext, area: Rect, at: Position) -> Clicked {
-        let nodes = context.player.tree().map_or(0, |tree| tree.nodes().len());
-        click_node(context, nodes, self.place_of_tree(context, area), at)
+        let PlacedTree {
+            lines,
+            place,
+            skipped,
+            ..
+        } = self.place_of_tree(context, area);
+        click_node(context, &lines, (place, skipped), at)
     }
 
     fn prepare(&mut self, context: &ViewContext) {
@@ -328,13 +436,17 @@ impl View for Inspector {
         let records = context.history().generations();
         let until = records
             .iter()
-            .take_while(|record| record.generation <= subject.generation);
+            .take_while(|record| record.generation <= subject.generation)
+            .map(|record| &**record);
+        let lineage = lineage(until.clone(), subject.id);
+        let course = lineage.as_ref().map(|lineage| lineage.course(until));
         self.computed = Some(Computed {
             subject,
             node,
             profiles,
             selection: context.experiment.selection(inspected),
-            lineage: lineage(until.map(|record| &**record), subject.id),
+            lineage,
+            course: course.unwrap_or_default(),
         });
     }
 
@@ -344,6 +456,7 @@ impl View for Inspector {
             Page::Values => values::csv(&computed.profiles),
             Page::Selection => selection::csv(context, &computed.selection),
             Page::Lineage => ancestry::csv(computed.lineage.as_ref()?),
+            Page::Curve => curve::csv(context, &computed.course),
         })
     }
 
@@ -362,6 +475,8 @@ impl View for Inspector {
          subtask, and C~+V, by which it chooses. Selection: the primitive subtasks that the\n\
          policy ends in, for each state type. Lineage: how the individual was made, back to the\n\
          first generation: what it inherited from whom, and what was reset because it stood\n\
-         above the crossover site (Thesis 3.2)."
+         above the crossover site (Thesis 3.2). Curve: mean time steps per trial, of the rollout\n\
+         trial after trial as the individual learns while it lives, and of its line of descent\n\
+         from generation to generation, as it inherits what its ancestors have learned."
     }
 }

@@ -74,9 +74,7 @@ impl ProfileChoice {
     ) {
         let look = &context.look;
         let Some(profile) = self.chosen(profiles) else {
-            let text = "this subtask can act in no state type";
-            put(buffer, area, (0, 0), text, look.style(Paint::Dim));
-            return;
+            return draw_nothing(context, area, buffer);
         };
         let title = wrapped(&self.title(context, profile), usize::from(area.width), "");
         for (row, line) in (0..area.height).zip(&title) {
@@ -111,6 +109,23 @@ impl ProfileChoice {
         }
         let (quantity, _) = names(profile.quantity);
         title + &format!("{quantity} over {over}")
+    }
+}
+
+/// Tells why the selected subtask has no values to show.
+fn draw_nothing(context: &ViewContext, area: Rect, buffer: &mut Buffer) {
+    let subtask = context.player.tree().map(|tree| {
+        let node = context.node_in(tree);
+        tree.subtask(node)
+    });
+    let why = subtask.and_then(|subtask| {
+        let why = context.experiment.nothing_learned(subtask)?;
+        Some(format!("{} {why}", subtask.name(context.catalogue())))
+    });
+    let why = why.unwrap_or_else(|| String::from("this subtask can act in no state type"));
+    let lines = wrapped(&why, usize::from(area.width), "");
+    for (row, line) in (0..area.height).zip(&lines) {
+        put(buffer, area, (0, row), line, context.look.style(Paint::Dim));
     }
 }
 

@@ -88,6 +88,8 @@ struct Detail {
     actions: bool,
     /// Updates per node that are listed before the last one.
     updates: usize,
+    /// Children per node that are listed one by one.
+    children: usize,
 }
 
 impl Detail {
@@ -96,16 +98,23 @@ impl Detail {
             standing,
             actions,
             updates,
+            children: usize::MAX - 1,
         }
+    }
+
+    const fn with_children(self, children: usize) -> Self {
+        Self { children, ..self }
     }
 }
 
 /// From full detail to the minimum; the first that fits is shown.
-const DETAILS: [Detail; 4] = [
+const DETAILS: [Detail; 6] = [
     Detail::new(true, true, 6),
     Detail::new(true, true, 1),
     Detail::new(false, true, 1),
     Detail::new(false, false, 1),
+    Detail::new(false, false, 1).with_children(5),
+    Detail::new(false, false, 0).with_children(3),
 ];
 
 /// Fewest rows that are used for the earlier steps.

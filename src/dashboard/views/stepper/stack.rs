@@ -71,8 +71,7 @@ pub(super) fn lines(shown: &ShownStep<'_>, columns: usize, detail: Detail) -> Ve
     for (depth, level) in explanation.levels.iter().enumerate() {
         lines.push(stack.title(depth, level));
         if level.chose || detail.standing {
-            let choices = level.choices.iter();
-            lines.extend(choices.map(|choice| stack.child(depth, level, choice)));
+            lines.extend(stack.children(depth, level, detail.children));
         }
     }
     lines.extend(stack.action(explanation.levels.len(), &explanation.action, detail));
@@ -117,6 +116,37 @@ impl Stack<'_> {
         pen.text(form.unwrap_or(&forms[2]).as_str(), paint).line()
     }
 
+    /// Returns the lines of the children: of `most` if there are more, the active one and the
+    /// most probable among them, and a line for the rest.
+    fn children(&self, depth: usize, level: &Level, most: usize) -> Vec<Line<'static>> {
+        let mut shown: Vec<&Choice> = level.choices.iter().collect();
+        shown.sort_by(|a, b| {
+            let key = |choice: &Choice| (choice.node == level.active, choice.probability);
+            let ((a_acts, a), (b_acts, b)) = (key(a), key(b));
+            b_acts.cmp(&a_acts).then(b.total_cmp(&a))
+        });
+        // One left out would take as much room as its line.
+        let rest = if shown.len() > most + 1 {
+            shown.split_off(most)
+        } else {
+            Vec::new()
+        };
+        shown.sort_by_key(|choice| choice.node);
+        let children = shown.into_iter();
+        let mut lines: Vec<_> = children
+            .map(|choice| self.child(depth, level, choice))
+            .collect();
+        if !rest.is_empty() {
+            let share: f32 = rest.iter().map(|choice| choice.probability).sum();
+            let text = format!("{} and {} more", self.shown.look.signs.ellipsis, rest.len());
+            let pen = Pen::new(self.shown.look).to(depth + 2);
+            let pen = pen.text(text, Paint::Dim);
+            let pen = pen.to(self.widths.name + 4 * self.widths.number);
+            lines.push(self.probability(pen, share, false, Paint::Dim));
+        }
+        lines
+    }
+
     /// Returns the line of a child: its values and its probability.
     fn child(&self, depth: usize, level: &Level, choice: &Choice) -> Line<'static> {
         let is_active = choice.node == level.active;
@@ -137,9 +167,11 @@ impl Stack<'_> {
     /// Returns the lines of a primitive node: its actions with their values and probabilities.
     fn action(&self, depth: usize, action: &ActionChoice, detail: Detail) -> Vec<Line<'static>> {
         let (signs, widths) = (self.shown.look.signs, self.widths);
-        let how = match action.rule {
-            SelectionRule::EpsilonGreedy => format!("{}-greedily", signs.epsilon),
-            _ => String::from("by softmax"),
+        let tau = format!(", {} {}", signs.tau, number(action.temperature));
+        let (how, tau) = match action.rule {
+            _ if action.values.len() == 1 => (String::from("by its only action"), String::new()),
+            SelectionRule::EpsilonGreedy => (format!("{}-greedily", signs.epsilon), tau),
+            _ => (String::from("by softmax"), tau),
         };
         let subtask = self.shown.tree.subtask(action.node);
         let acts = if action.acts_as == subtask {
@@ -152,14 +184,13 @@ impl Stack<'_> {
         } else {
             String::new()
         };
-        let how = format!(
-            "  {acts} {how}, {} {}{step}",
-            signs.tau,
-            number(action.temperature)
-        );
+        let name = self.shown.name(action.node);
+        let [long, short] = [tau.as_str(), ""].map(|tau| format!("  {acts} {how}{tau}{step}"));
+        let fits = depth + width(name) + width(&long) <= self.columns;
+        let how = if fits { long } else { short };
         let mut title = Pen::new(self.shown.look)
             .to(depth)
-            .text(self.shown.name(action.node), Paint::Title)
+            .text(name, Paint::Title)
             .text(how, Paint::Text);
         let above = widths.name + 2 * widths.number - 1;
         if title.column() < above {
