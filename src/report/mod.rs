@@ -25,6 +25,7 @@ pub mod study_export;
 mod study_run;
 mod study_tables;
 mod table;
+mod transfer;
 mod winner;
 
 pub use arm::{Arm, Base};
@@ -45,4 +46,5 @@ pub use study::{RunId, Study, StudyError};
 pub use study_export::{ReportError, WrittenReport, read_facts, write_report};
 pub use study_run::{StudyControls, StudyRun};
 pub use table::{Table, short};
+pub use transfer::{Transfer, TransferPlan, transfer, transfer_table};
 pub use winner::Winner;

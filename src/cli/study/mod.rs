@@ -6,6 +6,7 @@ mod progress;
 mod runs;
 mod status;
 mod table;
+mod transfer;
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +49,8 @@ Examples:
   maxq-lab study add studies/thesis --seeds 31..60         plan more runs for it
   maxq-lab study status studies/thesis                     show its progress
   maxq-lab study watch studies/thesis                      watch it live
-  maxq-lab study report studies/thesis                     write its report"
+  maxq-lab study report studies/thesis                     write its report
+  maxq-lab study transfer studies/thesis                   the winners in all scenarios"
 )]
 pub(super) struct Args {
     #[command(subcommand)]
@@ -197,6 +199,7 @@ enum Command {
     Commands(distribute::CommandsArgs),
     Slurm(distribute::SlurmArgs),
     Merge(distribute::MergeArgs),
+    Transfer(transfer::TransferArgs),
 }
 
 /// Runs `maxq-lab study` and its subcommands.
@@ -209,6 +212,7 @@ pub(super) fn main(args: &Args) -> CommandResult {
         Some(Command::Commands(args)) => distribute::commands(args),
         Some(Command::Slurm(args)) => distribute::slurm(args),
         Some(Command::Merge(args)) => distribute::merge_parts(args),
+        Some(Command::Transfer(args)) => transfer::main(args),
         None => runs::main(args),
     }
 }
