@@ -77,6 +77,7 @@ fn facts(
                 names(&["Wander"]),
                 names(&["ApproachNest"]),
             ],
+            forages: true,
         },
         course: (0..10).map(|g| moment(200.0, f64::from(g) - 9.0)).collect(),
         later: None,

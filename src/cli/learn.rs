@@ -23,7 +23,7 @@ use crate::lab::{
 Examples:
   maxq-lab learn cliff --algorithm q-learning
   maxq-lab learn cliff --algorithm td0 --policy random --steps 1000000 \\
-           --set learning.learning_rate=0.01
+           --set learning.discount=0.9 --set learning.learning_rate=0.01
   maxq-lab learn taxi-fickle --algorithm maxq-q --repeats 30")]
 pub(super) struct Args {
     #[command(flatten)]

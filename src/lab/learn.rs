@@ -97,6 +97,12 @@ pub enum LearnError {
          in cliff"
     )]
     NoGaussians,
+    /// The values that should be learned cannot be computed.
+    #[error(
+        "found no exact values to compare with: an episode need not end, or there are too many \
+         states; allowed: a discount below 1, or a policy that always ends"
+    )]
+    NoValues,
     /// The gate was stopped.
     #[error(transparent)]
     Stopped(#[from] Stopped),
@@ -125,7 +131,7 @@ pub fn learn<W: World>(
         algorithm,
         protocol,
         experiment.scenario.learning.discount,
-    );
+    )?;
     let done = AtomicUsize::new(0);
     let repeats = workers.map(
         (0..protocol.repeats).collect(),
@@ -177,25 +183,27 @@ impl<'f, P: Copy + AsRef<[f32]> + Send + Sync> Exam<'f, P> {
         algorithm: &Algorithm,
         protocol: &'f LearnProtocol,
         discount: f64,
-    ) -> Self {
+    ) -> Result<Self, LearnError> {
         let (optimal, sweeps) = finite.optimal_values(discount);
         let policy = match algorithm {
             Algorithm::Td0(GivenPolicy::Optimal) => Some(finite.best_policy(&optimal, discount)),
             Algorithm::Td0(GivenPolicy::Random) => Some(finite.random_policy()),
             _ => None,
         };
-        let exact = policy
-            .as_ref()
-            .map(|policy| finite.policy_values(policy, discount, MAX_SWEEPS).0);
-        Self {
+        let exact = match &policy {
+            Some(policy) => finite.exact_policy_values(policy, discount),
+            None => (sweeps < MAX_SWEEPS).then(|| optimal.clone()),
+        };
+        let exact = exact.ok_or(LearnError::NoValues)?;
+        Ok(Self {
             optimal_return: finite.value_at_start(&optimal),
-            exact: exact.unwrap_or(optimal),
+            exact,
             finite,
             protocol,
             discount,
             policy,
             check_sweeps: CHECK_SWEEPS.max(4 * sweeps),
-        }
+        })
     }
 
     fn course<W: World<Percept = P>>(

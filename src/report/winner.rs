@@ -26,6 +26,9 @@ pub struct Winner {
     pub primitives: Vec<String>,
     /// The primitive subtasks that can be selected, for each state type.
     pub selectable: Vec<Vec<String>>,
+    /// Whether its world is the foraging task.
+    #[serde(skip)]
+    pub forages: bool,
 }
 
 impl Winner {
@@ -49,6 +52,10 @@ impl Winner {
             tree: record.tree.clone(),
             primitives: record.primitives.clone(),
             selectable: record.primitives_by_state_type.clone(),
+            forages: SIDES
+                .concat()
+                .iter()
+                .all(|name| catalogue.find(name).is_some()),
         })
     }
 
@@ -73,7 +80,6 @@ impl Winner {
         let [first, second, third, fourth] = self.selectable.as_slice() else {
             return None;
         };
-        let captures = self.primitives.iter().any(|name| name == "ApproachBattery");
         let composites = |side: [&str; 3]| {
             let own = self.composites.iter().map(String::as_str);
             own.filter(|name| side.contains(name)).count()
@@ -81,7 +87,7 @@ impl Winner {
         let [capture, deliver] = SIDES.map(composites);
         let capture = capture + first.len() + second.len();
         let deliver = deliver + third.len() + fourth.len();
-        captures.then_some([capture, deliver])
+        self.forages.then_some([capture, deliver])
     }
 
     /// Returns whether the deliver side has all of its composite subtasks and at least four

@@ -2,6 +2,8 @@
 //!
 //! Learned values are compared with these exact ones. Learning and evolution never use them.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::{MapId, StateType, SubtaskId};
 
 /// Largest number of sweeps over all states. The values of a policy that need not terminate
@@ -9,6 +11,8 @@ use super::{MapId, StateType, SubtaskId};
 pub const MAX_SWEEPS: usize = 20_000;
 /// Values have converged when a sweep changes none by more than this.
 const EXACT: f64 = 1e-12;
+/// Largest number of states whose linear equations are solved: it takes about a second.
+const MOST_EQUATIONS: usize = 2000;
 
 /// A possible outcome of an action.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +82,68 @@ impl<P> Mdp<P> {
                 .map(|(outcomes, probability)| probability * expected(outcomes, values, discount))
                 .sum()
         })
+    }
+
+    /// Returns the values of a policy (Thesis Eq. 2.8) up to rounding: by sweeps or, where those
+    /// converge too slowly, by solving the linear equations. `None` where a value is not finite,
+    /// because an episode need not end, or where there are too many states to solve for.
+    #[must_use]
+    pub fn exact_policy_values(&self, policy: &PolicyTable, discount: f64) -> Option<Vec<f64>> {
+        let (values, sweeps) = self.policy_values(policy, discount, MAX_SWEEPS);
+        if sweeps < MAX_SWEEPS {
+            return Some(values);
+        }
+        let ends = discount < 1.0 || self.always_ends(policy);
+        (ends && self.states.len() <= MOST_EQUATIONS)
+            .then(|| self.solve(policy, discount))
+            .flatten()
+    }
+
+    /// Solves V = r + gamma P V.
+    fn solve(&self, policy: &PolicyTable, discount: f64) -> Option<Vec<f64>> {
+        let count = self.states.len();
+        let mut matrix = DMatrix::<f64>::identity(count, count);
+        let mut rewards = DVector::<f64>::zeros(count);
+        for (index, state) in self.existing() {
+            for (outcomes, share) in state.outcomes.iter().zip(&policy[index]) {
+                for outcome in outcomes {
+                    let probability = share * outcome.probability;
+                    rewards[index] += probability * outcome.reward;
+                    matrix[(index, outcome.next)] -= discount * probability;
+                }
+            }
+        }
+        let values = matrix.lu().solve(&rewards)?;
+        let finite = values.iter().all(|value| value.is_finite());
+        finite.then(|| values.iter().copied().collect())
+    }
+
+    /// Returns whether from every state a terminal one is reached under a policy, sooner or
+    /// later.
+    fn always_ends(&self, policy: &PolicyTable) -> bool {
+        let terminal = |state: &Option<MdpState<P>>| {
+            state.as_ref().is_none_or(|state| state.outcomes.is_empty())
+        };
+        let mut ends: Vec<bool> = self.states.iter().map(terminal).collect();
+        loop {
+            let leads = |index: usize, state: &MdpState<P>| {
+                let chosen = state.outcomes.iter().zip(&policy[index]);
+                let mut outcomes = chosen
+                    .filter(|&(_, &share)| share > 0.0)
+                    .flat_map(|(outcomes, _)| outcomes);
+                outcomes.any(|outcome| outcome.probability > 0.0 && ends[outcome.next])
+            };
+            let more = self
+                .existing()
+                .filter(|&(index, state)| !ends[index] && leads(index, state));
+            let more: Vec<usize> = more.map(|(index, _)| index).collect();
+            if more.is_empty() {
+                return ends.into_iter().all(|ends| ends);
+            }
+            for index in more {
+                ends[index] = true;
+            }
+        }
     }
 
     /// Returns the greedy policy for these values; equally good actions are equally likely.

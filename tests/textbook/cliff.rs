@@ -1,6 +1,7 @@
 //! The cliff walk: Figure 2.3, by all three flat algorithms.
 
 use maxq_lab::lab::{Algorithm, GivenPolicy, value_grids};
+use maxq_lab::worlds::World;
 
 use super::{cliff, hand_made, learned};
 
@@ -98,4 +99,32 @@ fn maxq_q_finds_the_shortest_way() {
     let algorithm = Algorithm::MaxqQ(hand_made(&experiment));
     let learned = learned(&experiment, &algorithm, 100_000, 1);
     assert!(learned.repeats[0].steps_until_always_optimal.is_some());
+}
+
+/// The random walk over the cliff takes tens of thousands of steps: sweeps over the states are
+/// far from its values when they stop.
+#[test]
+fn values_of_the_random_walk_solve_their_equations() {
+    for (settings, lowest) in [
+        (&[][..], Some(-65_375.0)),
+        (&["world.cliff.width=16"][..], None),
+        (&["world.cliff.width=24", "world.cliff.height=6"][..], None),
+    ] {
+        let experiment = cliff(settings);
+        let mdp = experiment.world.mdp().unwrap();
+        let policy = mdp.random_policy();
+        let values = mdp.exact_policy_values(&policy, 1.0).unwrap();
+        let scale = values
+            .iter()
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        for (index, state) in mdp.existing() {
+            let outcomes = state.outcomes.iter().flatten();
+            let next = outcomes.map(|o| 0.25 * o.probability * (o.reward + values[o.next]));
+            let next: f64 = next.sum();
+            assert!((values[index] - next).abs() < 1e-9 * scale, "{settings:?}");
+        }
+        if let Some(lowest) = lowest {
+            assert!((-scale - lowest).abs() < 1.0, "{scale}");
+        }
+    }
 }
