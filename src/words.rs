@@ -127,6 +127,11 @@ fn unknown<'e>(error: &'e str, start: &str) -> Option<(&'e str, String)> {
     Some((name, String::from("allowed: none")))
 }
 
+/// A choice that is a name and no more.
+const NAME_ALONE: &str = "the name alone";
+/// A choice that has a value.
+const NAME_WITH_VALUE: &str = "the name with its value, as in {\"name\": value}";
+
 /// Returns the parser's words for a value that was found in plain words.
 fn value(found: &str) -> String {
     for kind in ["integer `", "floating point `", "boolean `"] {
@@ -140,6 +145,8 @@ fn value(found: &str) -> String {
     match found {
         "map" => String::from("an object"),
         "sequence" => String::from("a list"),
+        "unit variant" => String::from(NAME_ALONE),
+        "newtype variant" => String::from(NAME_WITH_VALUE),
         _ => match found.strip_prefix("length ") {
             Some(length) => format!("a list of {}", shortened(length)),
             None => shortened(found),
@@ -161,6 +168,8 @@ fn kind(expected: &str) -> String {
         "a string" => String::from("text"),
         "a sequence" => String::from("a list"),
         "a map" => String::from("an object"),
+        "unit variant" => String::from(NAME_ALONE),
+        "newtype variant" => String::from(NAME_WITH_VALUE),
         _ if expected.starts_with("struct ") => String::from("an object"),
         _ => match expected.strip_prefix("an array of length ") {
             Some(length) => format!("a list of {length}"),
@@ -213,6 +222,10 @@ mod tests {
         assert_eq!(
             plain("unknown variant `a`, expected `b` or `c`"),
             "found \"a\"; allowed: b, c"
+        );
+        assert_eq!(
+            plain("invalid type: unit variant, expected newtype variant"),
+            "found the name alone; allowed: the name with its value, as in {\"name\": value}"
         );
         let long = format!(
             "invalid type: string {:?}, expected f64",

@@ -452,7 +452,7 @@ fn malformed_settings_are_rejected() {
         ),
         (
             "learning.composite_reward=per_step",
-            &["learning.composite_reward"],
+            &["learning.composite_reward.per_step: found the name alone; allowed: the name with"],
         ),
         (
             "learning.exit_value=goal",
