@@ -4,7 +4,6 @@
 use std::cmp::Ordering;
 
 use super::facts::Facts;
-use crate::lab::LaterSummary;
 
 /// Reads something from a run; `None` if the run does not have it.
 type Reading<T> = Box<dyn Fn(&Facts) -> Option<T>>;
@@ -38,11 +37,14 @@ pub fn metrics(state_types: usize) -> Vec<Measure<f64>> {
         "fresh_delivered_share",
         Box::new(|f| Some(f.fresh.delivered_share)),
     );
-    let ends: [(_, fn(LaterSummary) -> f64); 2] = [("first", |l| l.first), ("last", |l| l.last)];
-    for (end, of) in ends {
-        let name = format!("then_{end}_tenth_trial_steps");
-        add(&name, Box::new(move |f| f.later.map(of)));
-    }
+    add(
+        "then_first_tenth_trial_steps",
+        Box::new(|f| Some(f.later?.first)),
+    );
+    add(
+        "then_last_tenth_trial_steps",
+        Box::new(|f| Some(f.later?.last)),
+    );
     for (end, share) in [("first", 0.0), ("last", 1.0)] {
         let name = format!("best_fitness_{end}_trial_steps");
         add(&name, Box::new(move |f| f.at(share, |g| g.best_steps)));
