@@ -42,6 +42,7 @@ const COMMANDS: &[&[&str]] = &[
     &["study", "commands"],
     &["study", "slurm"],
     &["study", "merge"],
+    &["study", "transfer"],
     &["export"],
     &["tree"],
     &["tree", "show"],
