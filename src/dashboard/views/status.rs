@@ -162,7 +162,8 @@ fn changed(context: &ViewContext, room: usize) -> Vec<Fact> {
 /// Tells how far evolution has come, and how fast it runs.
 fn progress(context: &ViewContext, room: usize) -> Vec<Fact> {
     let history = context.live_history();
-    let limit = context.scenario().evolution.generation_limit;
+    let evolution = &context.scenario().evolution;
+    let (limit, step_limit) = (evolution.generation_limit, evolution.control_step_limit);
     let latest = history.latest().map_or(0, |record| record.generation);
     let text = |name, text: String| (name, text, Paint::Text);
     let mut facts = vec![text("generation", format!("{latest} of at most {limit}"))];
@@ -177,7 +178,8 @@ fn progress(context: &ViewContext, room: usize) -> Vec<Fact> {
     }
     if let Some(record) = history.latest() {
         let steps = thousands(record.control_steps);
-        facts.push(text("computed", format!("{steps} steps")));
+        let most = step_limit.map_or_else(String::new, |limit| format!(" of {}", thousands(limit)));
+        facts.push(text("computed", format!("{steps}{most} steps")));
     }
     match history.ending() {
         Some(Ending::Converged) => {
@@ -193,8 +195,19 @@ fn progress(context: &ViewContext, room: usize) -> Vec<Fact> {
         None if context.mode != Mode::Replay => {
             let unknown = || String::from("?");
             let rate = context.pace.steps_per_second();
+            let lived = history.latest().map_or(0, |record| record.control_steps);
+            let by_steps = rate.zip(step_limit).and_then(|(rate, limit)| {
+                let seconds = limit.saturating_sub(lived) as f64 / rate;
+                Duration::try_from_secs_f64(seconds).ok()
+            });
+            let left = context
+                .pace
+                .time_to(limit)
+                .into_iter()
+                .chain(by_steps)
+                .min();
+            let left = left.map_or_else(unknown, duration);
             let rate = rate.map_or_else(unknown, |rate| thousands(rate as u64));
-            let left = context.pace.time_to(limit).map_or_else(unknown, duration);
             facts.push(text("speed", format!("{rate} steps/s")));
             facts.push(text("time left", format!("at most {left}")));
         }
