@@ -170,7 +170,7 @@ impl<'r, W: World> Agent<'r, W> {
 
     /// Begins a trial in a given state.
     pub fn begin_in(&mut self, state: W::State) -> Trial<W::State> {
-        self.history.begin();
+        self.history.forget_trial();
         self.persists = 0;
         self.stack.clear();
         self.stack.push(Frame {

@@ -113,11 +113,12 @@ impl History {
     }
 
     /// Forgets the trial.
-    pub(super) fn begin(&mut self) {
-        if self.len() > KEPT_STATES {
+    pub(super) fn forget_trial(&mut self) {
+        let is_long = self.len() > KEPT_STATES;
+        self.clear();
+        if is_long {
             self.release();
         }
-        self.clear();
     }
 
     /// Forgets the states after the root's child has returned, unless the trial is kept.
@@ -140,7 +141,10 @@ impl History {
     }
 
     fn release(&mut self) {
+        self.situations = Vec::new();
+        self.rewards = Vec::new();
         self.inputs = Vec::new();
+        self.returns = Vec::new();
         for logged in &mut self.features {
             logged.vectors = Vec::new();
             logged.places = Vec::new();

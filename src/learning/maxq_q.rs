@@ -266,6 +266,7 @@ impl<W: World> Agent<'_, W> {
     fn end_trial(&mut self, observer: &mut impl Observer<W>) {
         if self.settings.replay > 0 {
             self.replay(observer);
+            self.history.forget_trial();
         }
         if self.settings.cool_on == CoolOn::Trial {
             for node in 0..self.parameters.plan.nodes.len() {
