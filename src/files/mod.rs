@@ -5,6 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
+use serde::de::DeserializeOwned;
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
@@ -123,6 +124,19 @@ pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
 /// Fails if the file cannot be read, is larger, or is not UTF-8.
 pub fn read_text(path: &Path, limit: u64) -> Result<String, FileError> {
     text_of(read_bytes(path, limit)?).map_err(|problem| FileError::new(path, problem))
+}
+
+/// Reads a JSON file within its limits; returns `None` if there is no file.
+///
+/// # Errors
+/// Fails if the file cannot be read, breaks a limit, or is not JSON of the type.
+pub fn read_json<T: DeserializeOwned>(path: &Path, limits: Limits) -> Result<Option<T>, FileError> {
+    if !fs::exists(path).unwrap_or(true) {
+        return Ok(None);
+    }
+    let text = read_text(path, limits.bytes)?;
+    let value = limits.check(&text).and_then(|()| parse_json(&text));
+    Ok(Some(value.map_err(|error| FileError::new(path, error))?))
 }
 
 /// Reads the text on standard input, as [`read_text`] does a file.

@@ -3,7 +3,6 @@
 //! Evolution settles a structure. Whether its policy improves after that is a claim of its own
 //! (S. Elfwing et al. 2007, *Evolutionary development of hierarchical learning structures*).
 
-use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -11,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::folder::LEARNING;
 use super::statistics::mean_of;
 use crate::evolution::{EvolutionState, Experiment, TrialRecord};
-use crate::files::{FileError, Limits, parse_json, read_text, write_atomically};
+use crate::files::{FileError, Limits, read_json, write_atomically};
 use crate::learning::{Gate, Stopped};
 use crate::random::{Purpose, stream};
 use crate::worlds::World;
@@ -94,13 +93,7 @@ impl LaterLearning {
     /// # Errors
     /// When the file is damaged.
     pub fn read(folder: &Path) -> Result<Option<Self>, FileError> {
-        let path = folder.join(LEARNING);
-        if !fs::exists(&path).unwrap_or(true) {
-            return Ok(None);
-        }
-        let text = read_text(&path, LIMITS.bytes)?;
-        let read = LIMITS.check(&text).and_then(|()| parse_json(&text));
-        Ok(Some(read.map_err(|error| FileError::new(path, error))?))
+        read_json(&folder.join(LEARNING), LIMITS)
     }
 
     /// Writes it to a run folder.

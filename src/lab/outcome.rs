@@ -1,6 +1,5 @@
 //! The result of a run: `run` prints it and `summary.json` holds it.
 
-use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -8,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::folder::SUMMARY;
 use super::later::LaterSummary;
 use crate::evolution::{GenerationRecord, RankedRecord};
-use crate::files::{FileError, Limits, parse_json, read_text};
+use crate::files::{FileError, Limits, read_json};
 
 /// The result of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,13 +48,7 @@ impl Outcome {
     /// # Errors
     /// When the file does not hold a result.
     pub fn read(folder: &Path) -> Result<Option<Self>, FileError> {
-        let path = folder.join(SUMMARY);
-        if !fs::exists(&path).unwrap_or(true) {
-            return Ok(None);
-        }
-        let text = read_text(&path, LIMITS.bytes)?;
-        let outcome = LIMITS.check(&text).and_then(|()| parse_json(&text));
-        Ok(Some(outcome.map_err(|error| FileError::new(path, error))?))
+        read_json(&folder.join(SUMMARY), LIMITS)
     }
 }
 

@@ -1,7 +1,6 @@
 //! The result files of a run: `summary.json`, written when evolution ends, and
 //! `evaluation.json`, written when its winner has been evaluated.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -10,7 +9,7 @@ use thiserror::Error;
 
 use super::arm::ArmError;
 use super::study::{RunId, Study};
-use crate::files::{FileError, Limits, parse_json, read_text};
+use crate::files::{FileError, Limits, read_json};
 use crate::lab::{
     Difference, EVALUATION, Evaluation, FolderError, MANIFEST, Manifest, Outcome, RunError,
     RunFolder, SetupError, check_log, differences_in, told,
@@ -93,12 +92,9 @@ pub enum StudyRunError {
 pub(super) fn evaluation(folder: &Path) -> Result<Option<WinnerEvaluation>, StudyRunError> {
     let path = folder.join(EVALUATION);
     // In an unfinished study, a missing file is not an error.
-    if !fs::exists(&path).unwrap_or(true) {
+    let Some(found) = read_json::<WinnerEvaluation>(&path, LIMITS)? else {
         return Ok(None);
-    }
-    let text = read_text(&path, LIMITS.bytes)?;
-    let found = LIMITS.check(&text).and_then(|()| parse_json(&text));
-    let found: WinnerEvaluation = found.map_err(|error| FileError::new(&path, error))?;
+    };
     if found.format != EVALUATION_FORMAT {
         let message = format!(
             "format: found {}; allowed: {EVALUATION_FORMAT}",
