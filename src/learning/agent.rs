@@ -4,7 +4,7 @@ use super::Encoder;
 use super::gate::{Gate, Stopped};
 use super::hierarchy::Hierarchy;
 use super::history::History;
-use super::plan::{Plan, Situation};
+use super::plan::Plan;
 use super::primitives::PrimitiveSet;
 use super::state_values::{Parameters, StateValues};
 use crate::hierarchy::Tree;
@@ -189,10 +189,8 @@ impl<'r, W: World> Agent<'r, W> {
 
     pub(super) fn perceive(&mut self, state: &W::State) {
         let percept = self.world.percept(state);
-        let situation = Situation {
-            state_type: self.world.state_type(state),
-            remembers: self.world.catalogue().remembers(percept.as_ref()),
-        };
+        let state_type = self.world.state_type(state);
+        let situation = self.parameters.plan.situation(state_type, percept.as_ref());
         self.now.load(situation, percept.as_ref());
     }
 }

@@ -197,8 +197,8 @@ impl History {
         self.situations[place]
     }
 
-    /// Returns the first of the states in one situation that end before `end`, not before
-    /// `first`.
+    /// Returns where the last states before `end` begin that are all in one situation. It is not
+    /// before `first`.
     #[inline(always)]
     pub(super) fn first_alike(&self, first: usize, end: usize) -> usize {
         let states = &self.situations[first..end];

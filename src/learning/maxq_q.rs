@@ -46,7 +46,8 @@ impl<W: World> Agent<'_, W> {
         }
     }
 
-    /// Lines 9 to 11: from the innermost active subtask down to a primitive subtask.
+    /// Lines 9 to 11: from the innermost active subtask down to a primitive subtask. Returns
+    /// `None` where no child can act.
     fn descend(&mut self, rng: &mut Stream, observer: &mut impl Observer<W>) -> Option<()> {
         loop {
             let node = self.stack.last()?.node;

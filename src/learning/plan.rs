@@ -48,6 +48,8 @@ pub(super) struct Plan {
     /// The lists of children that can act, one after the other.
     children: Vec<usize>,
     types: usize,
+    /// The input that tells whether the agent remembers ([`Catalogue::memory`]).
+    memory: Option<usize>,
 }
 
 impl Plan {
@@ -61,6 +63,7 @@ impl Plan {
             acting: Vec::new(),
             children: Vec::new(),
             types,
+            memory: catalogue.memory,
         };
         let mut free = vec![0; tree.nodes().len()];
         for (index, node) in tree.nodes().iter().enumerate() {
@@ -104,6 +107,15 @@ impl Plan {
             }
         }
         plan
+    }
+
+    /// Returns the situation in a state of this type with these inputs.
+    #[inline(always)]
+    pub(super) fn situation(&self, state_type: StateType, inputs: &[f32]) -> Situation {
+        Situation {
+            state_type,
+            remembers: self.memory.is_some_and(|input| inputs[input] > 0.5),
+        }
     }
 
     /// Returns the number of state types, with the terminal one.

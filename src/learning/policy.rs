@@ -4,7 +4,7 @@ use super::agent::Agent;
 use super::explanation::Choice;
 use super::features::Encoder;
 use super::hierarchy::Hierarchy;
-use super::plan::{Plan, Situation};
+use super::plan::Plan;
 use super::primitives::PrimitiveSet;
 use super::selection::SelectionRule;
 use super::state_values::{Parameters, StateValues};
@@ -16,8 +16,6 @@ use crate::worlds::{Catalogue, StateType, SubtaskId, World};
 pub struct Policy<'r> {
     parameters: Parameters<'r>,
     now: StateValues,
-    /// The input that tells whether the agent remembers the place that its task needs.
-    memory: Option<usize>,
     walk: Walk,
 }
 
@@ -61,7 +59,6 @@ impl<'r> Policy<'r> {
                 totals: vec![0.0; parameters.primitives.all().len()],
                 ..Walk::default()
             },
-            memory: catalogue.memory,
             parameters,
         }
     }
@@ -88,10 +85,7 @@ impl<'r> Policy<'r> {
 
     /// Moves to another state, to which all further queries refer.
     pub fn look(&mut self, state_type: StateType, inputs: &[f32]) {
-        let situation = Situation {
-            state_type,
-            remembers: self.memory.is_some_and(|input| inputs[input] > 0.5),
-        };
+        let situation = self.parameters.plan.situation(state_type, inputs);
         self.now.load(situation, inputs);
     }
 

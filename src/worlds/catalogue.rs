@@ -362,12 +362,6 @@ impl Catalogue {
         self.ids().filter(|&id| !self.subtask(id).is_composite())
     }
 
-    /// Returns whether the agent remembers the place that its task needs.
-    #[must_use]
-    pub fn remembers(&self, percept: &[f32]) -> bool {
-        self.memory.is_some_and(|input| percept[input] > 0.5)
-    }
-
     /// Returns the primitive subtask whose values and actions `primitive` uses in a state:
     /// itself, unless it imitates others.
     #[must_use]
