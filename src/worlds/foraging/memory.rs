@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 
-use super::motion::rotate;
+use super::motion::{in_frame, rotate};
 use super::sensors::TargetReading;
 use super::{ForagingState, ForagingWorld, Pose, Task};
 use crate::random::Stream;
@@ -60,9 +60,8 @@ impl Memory {
 
     /// Moves the remembered places as the robot moves.
     pub(super) fn shift(&mut self, movement: Movement) {
-        let back = Vector2::new(movement.heading.x, -movement.heading.y);
         for place in [&mut self.battery, &mut self.nest].into_iter().flatten() {
-            *place = rotate(*place - movement.displacement, back);
+            *place = in_frame(*place - movement.displacement, movement.heading);
         }
     }
 }
@@ -101,8 +100,7 @@ impl ForagingWorld {
 
     /// Returns the memory of a robot that knows where the closest battery and the nest are.
     pub(super) fn full_memory(&self, pose: &Pose) -> Memory {
-        let back = Vector2::new(pose.heading.x, -pose.heading.y);
-        let place = |target| rotate(self.arena.target(target) - pose.position, back);
+        let place = |target| in_frame(self.arena.target(target) - pose.position, pose.heading);
         let batteries = (0..self.arena.batteries.len()).map(place);
         Memory {
             battery: batteries.min_by(|a, b| a.norm().total_cmp(&b.norm())),
@@ -112,21 +110,19 @@ impl ForagingWorld {
 
     /// Returns the movement between two poses, in the frame of the first.
     pub(super) fn movement(before: &Pose, after: &Pose) -> Movement {
-        let back = Vector2::new(before.heading.x, -before.heading.y);
         Movement {
-            displacement: rotate(after.position - before.position, back),
-            heading: rotate(after.heading, back),
+            displacement: in_frame(after.position - before.position, before.heading),
+            heading: in_frame(after.heading, before.heading),
         }
     }
 
     /// Returns the memory of a robot that has seen a random battery and the nest before, with
     /// probability 1/2 each.
     pub(super) fn some_memory(&self, pose: &Pose, rng: &mut Stream) -> Memory {
-        let back = Vector2::new(pose.heading.x, -pose.heading.y);
         let battery = rng.random_range(0..self.arena.batteries.len());
         let mut place = |target| {
             let offset = self.arena.target(target) - pose.position;
-            rng.random::<bool>().then(|| rotate(offset, back))
+            rng.random::<bool>().then(|| in_frame(offset, pose.heading))
         };
         Memory {
             battery: place(battery),

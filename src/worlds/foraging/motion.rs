@@ -64,6 +64,11 @@ pub(super) fn rotate(vector: Vector2<f64>, heading: Vector2<f64>) -> Vector2<f64
     )
 }
 
+/// Returns `vector` in the frame whose x axis is the unit vector `heading`: undoes [`rotate`].
+pub(super) fn in_frame(vector: Vector2<f64>, heading: Vector2<f64>) -> Vector2<f64> {
+    rotate(vector, Vector2::new(heading.x, -heading.y))
+}
+
 /// Moves a disc from `position` by `motion`, and returns its position afterwards.
 ///
 /// The disc moves up to the first contact with a wall. There the component of the remaining
