@@ -220,7 +220,7 @@ pub(super) fn origin_lines(of: &Origin, plain: Paint) -> Vec<(String, Paint)> {
         vec![
             (made, Paint::Text),
             (inherited, Paint::Text),
-            (format!("reset {}", listed(reset)), Paint::Dim),
+            (was_reset(reset), Paint::Dim),
         ]
     } else {
         vec![(origin(of), plain)]
@@ -228,6 +228,14 @@ pub(super) fn origin_lines(of: &Origin, plain: Paint) -> Vec<(String, Paint)> {
     let mutations = of.mutations().iter();
     lines.extend(mutations.map(|mutation| (format!("mutation: {mutation}"), Paint::Notice)));
     lines
+}
+
+/// Tells what crossover reset. With `reset: child` it is no whole subtask.
+fn was_reset(subtasks: &[String]) -> String {
+    if subtasks.is_empty() {
+        return String::from("reset what the parent of the new subtask knew of it");
+    }
+    format!("reset {}", listed(subtasks))
 }
 
 fn listed(names: &[String]) -> String {

@@ -474,8 +474,9 @@ impl View for Inspector {
          primitive subtask (Thesis Figure 4.3); C~, C and V of the children of a composite\n\
          subtask, and C~+V, by which it chooses. Selection: the primitive subtasks that the\n\
          policy ends in, for each state type. Lineage: how the individual was made, back to the\n\
-         first generation: what it inherited from whom, and what was reset because it stood\n\
-         above the crossover site (Thesis 3.2). Curve: mean time steps per trial, of the rollout\n\
+         first generation: what it inherited from whom, and what was reset: what stood above the\n\
+         crossover site (Thesis 3.2), or with reset: child what the site's parent knew of the\n\
+         new subtask. Curve: mean time steps per trial, of the rollout\n\
          trial after trial as the individual learns while it lives, and of its line of descent\n\
          from generation to generation, as it inherits what its ancestors have learned."
     }
