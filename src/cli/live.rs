@@ -121,9 +121,7 @@ fn headless(
 ) -> Result<(), Failure> {
     let controls = run.controls.clone();
     signals.stop_on_signals(termination, survives_hangup, move || controls.stop())?;
-    let evolution = &run.scenario.evolution;
-    let (limit, population) = (evolution.generation_limit, evolution.population_size);
-    progress::follow(&run.events, limit, population);
+    progress::follow(&run.events, &run.scenario.evolution);
     Ok(())
 }
 

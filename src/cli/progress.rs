@@ -8,12 +8,16 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::evolution::GenerationRecord;
 use crate::lab::Event;
+use crate::scenario::EvolutionSettings;
 
 /// Follows a run to its end with a bar.
-pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize) {
-    let individuals = |generations: u64| generations * population as u64;
+///
+/// It counts control steps where the scenario limits them, and individuals otherwise.
+pub(super) fn follow(events: &Receiver<Event>, evolution: &EvolutionSettings) {
+    let individuals = |generations: u64| generations * evolution.population_size as u64;
+    let step_limit = evolution.control_step_limit;
     let bar = hidden(
-        individuals(limit),
+        step_limit.unwrap_or(individuals(evolution.generation_limit)),
         "{bar:10} {elapsed}, at most {eta} left  {wide_msg}",
     );
     show(&bar);
@@ -22,12 +26,19 @@ pub(super) fn follow(events: &Receiver<Event>, limit: u64, population: usize) {
         match event {
             Event::Generation(record) => {
                 message = describe(&record);
-                bar.set_position(individuals(record.generation));
+                bar.set_position(match step_limit {
+                    Some(_) => record.control_steps,
+                    None => individuals(record.generation),
+                });
             }
             Event::Progress {
                 generation, lived, ..
-            } if generation > 0 => bar.set_position(individuals(generation - 1) + lived as u64),
-            Event::Ended { generations, .. } => bar.set_length(individuals(generations)),
+            } if generation > 0 && step_limit.is_none() => {
+                bar.set_position(individuals(generation - 1) + lived as u64)
+            }
+            Event::Ended { generations, .. } if step_limit.is_none() => {
+                bar.set_length(individuals(generations));
+            }
             _ => {}
         }
         bar.set_message(message.clone());
