@@ -26,8 +26,10 @@ pub(super) fn drawn(reports: &[Report], form: CurveForm) -> String {
     match form {
         CurveForm::Text => figure(reports).text(COLUMNS) + &ends(reports),
         CurveForm::Csv => table(reports).csv(),
-        // A figure with a panel can be drawn.
-        CurveForm::Svg => figure(reports).svg().unwrap_or_default(),
+        CurveForm::Svg => match figure(reports).svg() {
+            Ok(svg) => svg,
+            Err(error) => error.to_string(),
+        },
     }
 }
 

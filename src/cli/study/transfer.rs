@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::cli::args::useful_threads;
-use crate::cli::output::{self, CommandResult, Format};
+use crate::cli::output::{CommandResult, Format};
+use crate::cli::progress::repeats;
 use crate::evolution::Workers;
 use crate::learning::Gate;
 use crate::report::{Numbers, Study, TransferPlan, transfer, transfer_table};
@@ -74,8 +75,13 @@ pub(super) fn main(args: &TransferArgs) -> CommandResult {
         trials: args.trials as usize,
     };
     let workers = Workers::new(useful_threads(args.threads).get())?;
-    let show = |done, all| output::message(&format!("{done} of {all} evaluations"));
+    let bar = repeats(0);
+    let show = |done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
     let transfers = transfer(&study, &plan, &workers, &Gate::default(), &show)?;
+    bar.finish_and_clear();
     args.format.print(&transfers, |transfers| {
         format!(
             "{}, arm {}: mean time steps of {} trials after {}, +- 95 % interval over winners\n\n{}",
