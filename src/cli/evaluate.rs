@@ -21,7 +21,8 @@ use crate::lab::{AnyExperiment, Protocol, experiment, overrides, summarise};
 ///
 /// With --curve the answer is a learning curve: the trial length against the trials lived, from
 /// the first warm-up trial to the last scored one. Several trees, and settings to compare with,
-/// give several lines; all use the same seeds.
+/// give several lines; all use the same seeds. Without --curve they are evaluated one after the
+/// other, and JSON is a list.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -17,7 +17,7 @@ use crate::scenario::Then;
 ///
 /// The run is saved continuously in its folder: run.json (what is run), events.jsonl (every
 /// generation), checkpoint.json (the latest state), generations/ (earlier checkpoints) and, at
-/// the end, summary.json. It can be interrupted at any moment, even with kill -9, and resumed
+/// the end, summary.json; learning.json with --then. It can be interrupted at any moment, even with kill -9, and resumed
 /// without loss: 'maxq-lab resume DIR'.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
