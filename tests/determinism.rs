@@ -11,7 +11,7 @@ mod common;
 
 use std::time::Duration;
 
-use common::{Record, SHORT, record, short, stop_after, threads, wait_until};
+use common::{OPTIONS, Record, SHORT, record, short, stop_after, threads, wait_until};
 use crossbeam_channel::never;
 use maxq_lab::lab::{Activity, Controls, Event, Run, RunOptions, read_events, resume, start};
 use maxq_lab::random::{Purpose, stream};
@@ -147,7 +147,7 @@ fn every_switch_is_deterministic_and_matters() {
     // Quick cooling, so that its time matters in a short run.
     const COOLING: &str = "learning.temperature_decrease=0.7";
     let default = record(&short(&[COOLING]), 1, &threads(2));
-    for switch in [
+    let switches = [
         "learning.primitive_learning=shared",
         "learning.composite_choice=random",
         "learning.cool_on=goal",
@@ -158,18 +158,11 @@ fn every_switch_is_deterministic_and_matters() {
         "evolution.grow_probability=0.5",
         "evolution.variation=random_trees",
         "evolution.variation=none",
-        r#"learning.composite_reward={"per_step":-0.1}"#,
-        "learning.exit_value=continuation",
-        "learning.bootstrap=expected",
-        "learning.persistence=3",
-        "learning.replay=1",
-        "learning.composite_temperature=0.3",
-        "learning.cool_on=trial",
-        "evolution.reset=child",
         r#"world.foraging.memory={"odometry_noise":0.1}"#,
         "world.foraging.arena.transparent_walls_mm=[[500,900,1500,900]]",
         "world.foraging.features.rbf_width=variance",
-    ] {
+    ];
+    for &switch in switches.iter().chain(OPTIONS) {
         let scenario = short(&[COOLING, switch]);
         let one = record(&scenario, 1, &threads(1));
         let two = record(&scenario, 1, &threads(2));

@@ -10,7 +10,7 @@
 
 mod common;
 
-use common::{SHORT_TRAINING, record, threads};
+use common::{OPTIONS, SHORT_TRAINING, record, threads};
 use maxq_lab::evolution::Workers;
 use maxq_lab::lab::{Algorithm, AnyExperiment, GivenPolicy, LearnProtocol, experiment};
 use maxq_lab::learning::Gate;
@@ -25,18 +25,6 @@ const EVOLUTION: &[(&str, u32)] = &[
     ("four-rooms", 0x71ee_36be),
     ("environment-4", 0x05f4_b3ea),
     ("environment-6", 0x3fa2_e4d4),
-];
-
-/// Options beyond the thesis that work in every world.
-const OPTIONS: &[&str] = &[
-    r#"learning.composite_reward={"per_step":-0.1}"#,
-    "learning.exit_value=continuation",
-    "learning.bootstrap=expected",
-    "learning.persistence=3",
-    "learning.replay=1",
-    "learning.composite_temperature=0.3",
-    "learning.cool_on=trial",
-    "evolution.reset=child",
 ];
 
 /// The same for `taxi` with all of them.

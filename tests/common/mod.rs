@@ -12,6 +12,18 @@ use std::time::{Duration, Instant};
 use maxq_lab::lab::{Event, Outcome, Run, RunOptions, start};
 use maxq_lab::scenario::Scenario;
 
+/// Options beyond the thesis that work in every world.
+pub const OPTIONS: &[&str] = &[
+    r#"learning.composite_reward={"per_step":-0.1}"#,
+    "learning.exit_value=continuation",
+    "learning.bootstrap=expected",
+    "learning.persistence=3",
+    "learning.replay=1",
+    "learning.composite_temperature=0.3",
+    "learning.cool_on=trial",
+    "evolution.reset=child",
+];
+
 /// Settings for a short training of the primitive subtasks of foraging.
 pub const SHORT_TRAINING: [&str; 5] = [
     "world.foraging.primitive_training.avoid.steps=2000",
