@@ -13,7 +13,7 @@ pub const RECENT: u64 = 64;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Keep {
-    /// Those of the last [`RECENT`] generations, and fewer of older ones: every second until they
+    /// Those of the last 64 generations, and fewer of older ones: every second until they
     /// are twice as old, then every fourth until they are four times as old, and so on.
     #[default]
     Thinned,
